@@ -94,7 +94,7 @@ impl<'a> Target<'a> {
     /// The energy of a triangle; second derivatives are those of Gauss and Newton: as if errors were linear in what moves.
     pub(super) fn expansion(&self, points: &[Point], freedoms: &[Freedom]) -> Expansion {
         let mut found = Expansion::new();
-        let slope = |p: Point| self.function.slope(p).unwrap_or_default();
+        let slope = |p: Point| self.function.jet(p).map_or_else(Default::default, |jet| (jet.value, jet.gradient));
         let at_nodes: Vec<(f64, Vector)> = self.at_nodes.iter().map(|b| slope(blend(points, b))).collect();
         for (place, shares) in self.rule.places.iter().zip(&self.at_places) {
             let (value, here) = slope(place.image(points));

@@ -16,7 +16,7 @@ mod tree;
 
 pub(crate) use candidates::Candidates;
 pub(crate) use contact::{Corners, contacts, is_flat};
-pub use jet::Jet3;
+pub use jet::{Jet, Jet3};
 pub(crate) use motion::Motion;
 pub use point::{Aabb, Aabb3, Point, Point3, Vector, Vector3};
 pub(crate) use point::{Readable, kept_within};

@@ -92,6 +92,11 @@ impl Tensor {
         Tensor::new(v.x * v.x, v.x * v.y, v.y * v.y)
     }
 
+    /// u v' + v u'.
+    pub(crate) fn symmetric_product(u: Vector, v: Vector) -> Tensor {
+        Tensor::new(2.0 * u.x * v.x, u.x * v.y + u.y * v.x, 2.0 * u.y * v.y)
+    }
+
     /// Metric length of a vector: sqrt(v' M v).
     pub fn length(self, v: Vector) -> f64 {
         self.dot(v, v).max(0.0).sqrt()

@@ -1,12 +1,12 @@
 //! Expressions in x, y and z: compiled once to a flat program that runs without allocating.
 
 use super::parser::Parser;
-use super::program::{Op, run};
+use super::program::{Op, Program};
 use super::series::Series;
 use super::sharing::shared;
 use super::vocabulary::Variables;
 use crate::error::Result;
-use crate::geometry::{Jet3, Point3, Vector3};
+use crate::geometry::{Jet, Jet3, Point, Point3, Vector3};
 use std::ops::Range;
 
 /// A compiled expression. From loosest to tightest:
@@ -24,7 +24,7 @@ use std::ops::Range;
 /// double precision: 1/0 is infinite, sqrt(-1) is NaN.
 #[derive(Clone, Debug)]
 pub struct Expression {
-    code: Vec<Op>,
+    program: Program,
     /// The value of t, in expressions of space that change.
     time: f64,
 }
@@ -41,7 +41,7 @@ impl Expression {
     /// Compiles a text that `name` names in messages.
     pub(crate) fn named(text: &str, variables: Variables, name: &str) -> Result<Self> {
         let program = Self::program(text, 0..text.len(), variables, name)?;
-        Ok(Self { code: shared(&[program]), time: 0.0 })
+        Ok(Self { program: shared(&[program]), time: 0.0 })
     }
 
     /// The program of a part of a text; columns count from the start of the whole text, which `name` names in messages.
@@ -57,7 +57,7 @@ impl Expression {
 
     /// The value at a point; z is not used by expressions of the plane, and is the time of those with one.
     pub(crate) fn at(&self, x: f64, y: f64, z: f64) -> f64 {
-        let [value] = run(&self.code, [x, y, z, self.time]);
+        let [value] = self.program.run([x, y, z, self.time]);
         value
     }
 
@@ -65,14 +65,21 @@ impl Expression {
     /// has a kink (comparisons, `if`, `abs`, `min`, `max`) they are those of one side.
     pub(crate) fn jet(&self, p: Point3) -> Jet3 {
         let [x, y, z] = Jet3::coordinates(p.x, p.y, p.z);
-        let [value] = run(&self.code, [x, y, z, self.time.into()]);
+        let [value] = self.program.run([x, y, z, self.time.into()]);
+        value
+    }
+
+    /// The same of an expression of the plane, or of x, y and t.
+    pub(super) fn planar_jet(&self, p: Point, time: f64) -> Jet {
+        let [x, y] = Jet::coordinates(p.x, p.y);
+        let [value] = self.program.run([x, y, time.into(), self.time.into()]);
         value
     }
 
     /// The value at a point and along a line, with derivatives up to the fourth; of kinks as [`Expression::jet`] has it.
     pub(super) fn along(&self, p: Point3, v: Vector3) -> Series {
         let [x, y, z] = [(p.x, v.x), (p.y, v.y), (p.z, v.z)].map(|(from, step)| Series::line(from, step));
-        let [value] = run(&self.code, [x, y, z, self.time.into()]);
+        let [value] = self.program.run([x, y, z, self.time.into()]);
         value
     }
 }

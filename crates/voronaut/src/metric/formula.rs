@@ -2,12 +2,12 @@
 
 use super::expression::Expression;
 use super::parser::error_at;
-use super::program::{Op, run};
+use super::program::{Op, Program};
 use super::sharing::shared;
 use super::vocabulary::Variables;
 use super::{MetricField, ScalarField};
 use crate::error::{Error, Result};
-use crate::geometry::{Point, Point3, Tensor, Tensor3, Vector, Vector3};
+use crate::geometry::{Jet, Point, Point3, Tensor, Tensor3, Vector, Vector3};
 
 /// The field ((m11, m12), (m12, m22)) of three expressions in x and y; see [`Expression`] for what they may hold.
 ///
@@ -16,7 +16,7 @@ use crate::geometry::{Point, Point3, Tensor, Tensor3, Vector, Vector3};
 #[derive(Clone, Debug)]
 pub struct Formula {
     /// All entries.
-    code: Vec<Op>,
+    program: Program,
 }
 
 /// The field of space with entries m11, m12, m22, m13, m23, m33 of six expressions in x, y and z; the order is that of
@@ -24,7 +24,7 @@ pub struct Formula {
 #[derive(Clone, Debug)]
 pub struct SpaceFormula {
     /// All entries.
-    code: Vec<Op>,
+    program: Program,
 }
 
 impl Formula {
@@ -40,7 +40,7 @@ impl Formula {
                 "in the plane write three entries: m11; m12; m22",
             ));
         }
-        Ok(Self { code: entries(text, &["m11", "m12", "m22"], "three", Variables::Plane)? })
+        Ok(Self { program: entries(text, &["m11", "m12", "m22"], "three", Variables::Plane)? })
     }
 }
 
@@ -51,17 +51,17 @@ impl SpaceFormula {
     /// [`Error::Parse`] with the column and the place shown.
     pub(crate) fn parse(text: &str) -> Result<Self> {
         let names = ["m11", "m12", "m22", "m13", "m23", "m33"];
-        Ok(Self { code: entries(text, &names, "six", Variables::Space)? })
+        Ok(Self { program: entries(text, &names, "six", Variables::Space)? })
     }
 
     /// The tensor at a point.
     pub(crate) fn tensor(&self, p: Point3) -> Tensor3 {
-        Tensor3::from_disk(run(&self.code, [p.x, p.y, p.z, 0.0]))
+        Tensor3::from_disk(self.program.run([p.x, p.y, p.z, 0.0]))
     }
 }
 
 /// The program of expressions between semicolons, as many as there are names; `count` is their number as a word.
-fn entries(text: &str, names: &[&str], count: &str, variables: Variables) -> Result<Vec<Op>> {
+fn entries(text: &str, names: &[&str], count: &str, variables: Variables) -> Result<Program> {
     let mut starts = vec![0];
     starts.extend(text.match_indices(';').map(|(at, _)| at + 1));
     if starts.len() != names.len() {
@@ -81,7 +81,7 @@ fn entries(text: &str, names: &[&str], count: &str, variables: Variables) -> Res
 
 impl MetricField for Formula {
     fn at(&self, p: Point) -> Tensor {
-        let [m11, m12, m22] = run(&self.code, [p.x, p.y, 0.0, 0.0]);
+        let [m11, m12, m22] = self.program.run([p.x, p.y, 0.0, 0.0]);
         Tensor::new(m11, m12, m22)
     }
 }
@@ -103,8 +103,7 @@ impl Snapshot {
 
     /// Exact second derivatives by x and y.
     pub fn second_derivatives(&self, p: Point) -> Tensor {
-        let hessian = self.expression.jet(Point3::new(p.x, p.y, self.time)).hessian;
-        Tensor::new(hessian.xx, hessian.xy, hessian.yy)
+        self.expression.planar_jet(p, self.time).hessian
     }
 }
 
@@ -119,9 +118,8 @@ impl ScalarField for Snapshot {
         self.expression.at(p.x, p.y, self.time)
     }
 
-    fn slope(&self, p: Point) -> Option<(f64, Vector)> {
-        let jet = self.expression.jet(Point3::new(p.x, p.y, self.time));
-        Some((jet.value, Vector::new(jet.gradient.x, jet.gradient.y)))
+    fn jet(&self, p: Point) -> Option<Jet> {
+        Some(self.expression.planar_jet(p, self.time))
     }
 }
 

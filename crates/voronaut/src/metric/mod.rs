@@ -68,7 +68,7 @@ pub(crate) use validate::{
 };
 pub use vocabulary::Variables;
 
-use crate::geometry::{Aabb, Point, Tensor, Vector};
+use crate::geometry::{Aabb, Jet, Point, Tensor};
 use crate::mesh::Mesh;
 use std::cell::Cell;
 
@@ -148,8 +148,8 @@ pub trait ScalarField: Sync {
     /// The value at a point.
     fn value(&self, p: Point) -> f64;
 
-    /// The value and the derivatives by x and y; `None` where these are not known in closed form.
-    fn slope(&self, _p: Point) -> Option<(f64, Vector)> {
+    /// The value, and first and second derivatives by x and y; `None` where these are not known in closed form.
+    fn jet(&self, _p: Point) -> Option<Jet> {
         None
     }
 }

@@ -1,6 +1,6 @@
 //! From the text of an expression to its program: one pass, precedence climbing, constants folded.
 
-use super::program::{Op, STACK, run};
+use super::program::{Op, STACK, folded};
 use super::vocabulary::{COMPARISON, CONSTANTS, FUNCTIONS, Function, OPERATORS, POWER, SIGN, Variables};
 use crate::error::{Error, Result};
 use std::ops::Range;
@@ -267,8 +267,7 @@ impl<'a> Parser<'a> {
 fn fold(op: Op, operands: usize, code: &[Op]) -> Option<(usize, Op)> {
     let taken = &code[code.len().checked_sub(operands)?..];
     if operands > 0 && taken.iter().all(|op| matches!(op, Op::Constant(_))) {
-        let [value] = run(&[taken, &[op, Op::Result(0)]].concat(), [0.0; 4]);
-        return Some((operands, Op::Constant(value)));
+        return Some((operands, Op::Constant(folded(taken, op))));
     }
     match (op, code) {
         (Op::Power, [.., Op::Constant(2.0)]) => Some((1, Op::Square)),

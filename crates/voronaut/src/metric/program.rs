@@ -2,7 +2,7 @@
 
 use super::series::{Number, Unary};
 use crate::elementary::Elementary;
-use crate::geometry::Jet3;
+use crate::geometry::{Jet, Jet3};
 
 impl Number for f64 {
     fn value(self) -> f64 {
@@ -26,40 +26,48 @@ impl Number for f64 {
     }
 }
 
-impl Number for Jet3 {
-    fn value(self) -> f64 {
-        self.value
-    }
+/// The same for jets of the plane and of space.
+macro_rules! numbers {
+    ($($jet:ident),*) => {$(
+        impl Number for $jet {
+            fn value(self) -> f64 {
+                self.value
+            }
 
-    fn square(self) -> Self {
-        self.chain(self.value * self.value, [2.0 * self.value, 2.0])
-    }
+            fn square(self) -> Self {
+                self.chain(self.value * self.value, [2.0 * self.value, 2.0])
+            }
 
-    fn power(self, exponent: Self) -> Self {
-        let (a, b) = (self.value, exponent.value);
-        let power = a.raised_to(b);
-        let by_base = [scaled_power(b, a, b - 1.0), scaled_power(b * (b - 1.0), a, b - 2.0)];
-        if exponent.is_constant() {
-            // Bases below zero have no logarithm, but powers.
-            return self.chain(power, by_base);
+            fn power(self, exponent: Self) -> Self {
+                let (a, b) = (self.value, exponent.value);
+                let power = a.raised_to(b);
+                let by_base = [scaled_power(b, a, b - 1.0), scaled_power(b * (b - 1.0), a, b - 2.0)];
+                if exponent.is_constant() {
+                    // Bases below zero have no logarithm, but powers.
+                    return self.chain(power, by_base);
+                }
+                let log = a.logarithm();
+                let second = [by_base[1], a.raised_to(b - 1.0) * (1.0 + b * log), log * log * power];
+                self.chain2(exponent, power, [by_base[0], log * power], second)
+            }
+
+            fn atan2(self, other: Self) -> Self {
+                let (y, x) = (self.value, other.value);
+                let square = x * x + y * y;
+                let fourth = square.powi(2);
+                let second = [-2.0 * x * y / fourth, (y * y - x * x) / fourth, 2.0 * x * y / fourth];
+                self.chain2(other, y.arctangent_over(x), [x / square, -y / square], second)
+            }
+
+            fn call(self, function: &Unary) -> Self {
+                let value = (function.value)(self.value);
+                self.chain(value, (function.derivatives)(self.value, value))
+            }
         }
-        let log = a.logarithm();
-        let second = [by_base[1], a.raised_to(b - 1.0) * (1.0 + b * log), log * log * power];
-        self.chain2(exponent, power, [by_base[0], log * power], second)
-    }
-
-    fn atan2(self, other: Self) -> Self {
-        let (y, x) = (self.value, other.value);
-        let square = x * x + y * y;
-        let fourth = square.powi(2);
-        let second = [-2.0 * x * y / fourth, (y * y - x * x) / fourth, 2.0 * x * y / fourth];
-        self.chain2(other, y.arctangent_over(x), [x / square, -y / square], second)
-    }
-
-    fn call(self, function: &Unary) -> Self {
-        self.chain((function.value)(self.value), (function.derivatives)(self.value))
-    }
+    )*};
 }
+
+numbers!(Jet, Jet3);
 
 /// c a^b, zero where c is, even if a^b is infinite.
 fn scaled_power(c: f64, a: f64, b: f64) -> f64 {
@@ -68,8 +76,6 @@ fn scaled_power(c: f64, a: f64, b: f64) -> f64 {
 
 /// Values an expression may keep waiting, such as the three 1 in `1 + (1 + (1 + x))`.
 pub(super) const STACK: usize = 64;
-/// For programs of no more instructions, such as x^2 + y^2 + z^2 - 1 with derivatives: what is not there need not be set to zero.
-const SMALL_STACK: usize = 16;
 
 /// One instruction; operands come from the stack, the result goes there.
 #[derive(Clone, Copy, Debug)]
@@ -132,14 +138,30 @@ impl Op {
     }
 }
 
-/// What a program makes of its variables: its results.
-pub(super) fn run<N: Number, const RESULTS: usize>(code: &[Op], variables: [N; 4]) -> [N; RESULTS] {
-    // No program has more values than instructions, and those kept, at the stack's end, are there in any stack that is a part of the whole.
-    if code.len() <= SMALL_STACK {
-        run_on::<N, RESULTS, SMALL_STACK>(code, variables)
-    } else {
-        run_on::<N, RESULTS, STACK>(code, variables)
+/// Instructions, and how many values they have at once at most: those that wait, and those that are kept.
+#[derive(Clone, Debug)]
+pub(super) struct Program {
+    pub(super) code: Vec<Op>,
+    pub(super) height: usize,
+}
+
+impl Program {
+    /// What it makes of its variables: its results.
+    pub(super) fn run<N: Number, const RESULTS: usize>(&self, variables: [N; 4]) -> [N; RESULTS] {
+        // What is not there need not be set to zero. Values that are kept are at the stack's end, and there in any stack that is a part of the
+        // whole. Eight jets take as long to clear as one takes to compute.
+        match self.height {
+            ..=8 => run_on::<N, RESULTS, 8>(&self.code, variables),
+            ..=16 => run_on::<N, RESULTS, 16>(&self.code, variables),
+            _ => run_on::<N, RESULTS, STACK>(&self.code, variables),
+        }
     }
+}
+
+/// What an instruction makes of constants.
+pub(super) fn folded(constants: &[Op], op: Op) -> f64 {
+    let [value] = run_on::<f64, 1, STACK>(&[constants, &[op, Op::Result(0)]].concat(), [0.0; 4]);
+    value
 }
 
 fn run_on<N: Number, const RESULTS: usize, const SIZE: usize>(code: &[Op], variables: [N; 4]) -> [N; RESULTS] {

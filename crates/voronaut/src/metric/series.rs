@@ -3,11 +3,11 @@
 use crate::elementary::Elementary;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A function of one number with its first and second derivative, and the series of the first.
+/// A function of one number with its first and second derivative by the number and its value there, and the series of the first.
 #[derive(Debug)]
 pub(super) struct Unary {
     pub(super) value: fn(f64) -> f64,
-    pub(super) derivatives: fn(f64) -> [f64; 2],
+    pub(super) derivatives: fn(f64, f64) -> [f64; 2],
     pub(super) slope: fn(Series) -> Series,
 }
 

@@ -1,11 +1,11 @@
 //! Several programs as one, in which what occurs more than once is computed once: the entries of a metric have most in common.
 
-use super::program::{Op, STACK};
+use super::program::{Op, Program, STACK};
 use std::collections::HashMap;
 
 /// The programs one after the other, each with its result; values are the same to the bit. What occurs in one branch of an `if` alone is
 /// computed there.
-pub(super) fn shared(programs: &[Vec<Op>]) -> Vec<Op> {
+pub(super) fn shared(programs: &[Vec<Op>]) -> Program {
     let mut values = Values::default();
     let mut steps = Vec::new();
     let height = programs.iter().enumerate().map(|(i, code)| values.read(code, i, &mut steps)).max().unwrap_or(0);
@@ -15,7 +15,7 @@ pub(super) fn shared(programs: &[Vec<Op>]) -> Vec<Op> {
     for step in steps {
         writer.write(step);
     }
-    writer.code
+    Program { code: writer.code, height: height + writer.most }
 }
 
 /// A program without places to jump to.
@@ -95,8 +95,9 @@ struct Writer {
     /// Where a value is kept, as far as that was done on every way here; in the order of `log`.
     kept: Vec<Option<u32>>,
     log: Vec<u32>,
-    /// How many can be kept.
+    /// How many can be kept, and how many are at most.
     room: usize,
+    most: usize,
     /// Of open branches: the jump that does not know its target, and how long the log was.
     branches: Vec<(usize, usize)>,
 }
@@ -150,6 +151,7 @@ impl Writer {
             self.code.push(Op::Keep(place));
             self.kept[value as usize] = Some(place);
             self.log.push(value);
+            self.most = self.most.max(self.log.len());
         }
     }
 }
@@ -161,7 +163,7 @@ mod tests {
 
     fn code(texts: &[&str]) -> Vec<Op> {
         let parse = |text: &&str| Expression::program(text, 0..text.len(), Variables::Plane, "expression").unwrap();
-        shared(&texts.iter().map(parse).collect::<Vec<_>>())
+        shared(&texts.iter().map(parse).collect::<Vec<_>>()).code
     }
 
     fn calls(texts: &[&str]) -> usize {

@@ -45,7 +45,7 @@ pub(super) fn mesh_curved(
     options: &MeshOptions,
     progress: &dyn Progress,
 ) -> Result<Meshed> {
-    let is_known = |aim: &Aim| aim.function.slope(domain.triangles()[0][0]).is_some();
+    let is_known = |aim: &Aim| aim.function.jet(domain.triangles()[0][0]).is_some();
     match aim {
         Some(aim) if is_known(&aim) => mesh_for_function(domain, field, aim, options, progress),
         _ => {

@@ -5,19 +5,21 @@
 //! function is saddle-shaped longer ones are as good. The last tenth is gained on the error itself.
 
 mod moves;
+mod objective;
 mod on_surface;
 mod plane;
 
 use super::Patience;
 use crate::dual::{Dual, Kind, SurfaceDual};
 use crate::error::{Error, Result};
-use crate::geometry::Vector;
+use crate::geometry::{Jet, Vector};
 use crate::metric::{Expression, Norm, ScalarField};
 use crate::parallel::prelude::*;
 use crate::progress::Progress;
 use crate::triangulation::{HalfEdge, Triangulation, VertexId};
-pub(crate) use moves::polishing_norm;
-use moves::{Frame, Objective, Place};
+use moves::Frame;
+pub(crate) use objective::polishing_norm;
+use objective::{Objective, Place};
 use on_surface::OnSurface;
 use plane::Flat;
 
@@ -105,6 +107,10 @@ trait Sheet: Sync {
     fn value(&self, at: Self::At) -> f64;
     /// The function in a triangle, at barycentric coordinates.
     fn value_within(&self, corners: [Self::At; 3], weights: [f64; 3]) -> f64;
+    /// The function in a triangle, and its derivatives in the directions of a frame; `None` where these are not known.
+    fn jet_within(&self, _corners: [Self::At; 3], _weights: [f64; 3], _frame: &Frame) -> Option<Jet> {
+        None
+    }
     /// Quality, in the mean tensor of three vertices, of a triangle with these corners: 1 of an equilateral one.
     fn shape(&self, vertices: [VertexId; 3], corners: [Self::At; 3]) -> f64;
     /// Whether an edge may be flipped.
@@ -124,17 +130,18 @@ fn polished<S: Sheet>(
 ) -> Result<(Polished, Option<S>)> {
     let mut polished = Polished::default();
     let Some(mut work) = Work::new(sheet, norm)? else { return Ok((polished, None)) };
-    polished.error.push(work.norm());
+    let mut error = work.norm();
+    polished.error.push(error);
     if sweeps == 0 {
         return Ok((polished, None));
     }
     for _ in 0..sweeps {
         polished.flips += work.flip_all();
         polished.moves += work.move_all();
-        let before = polished.error.last().copied().unwrap_or_default();
-        polished.error.push(work.norm());
+        let before = std::mem::replace(&mut error, work.norm());
+        polished.error.push(error);
         progress.advance(1)?;
-        if work.norm() > (1.0 - gain) * before {
+        if error > (1.0 - gain) * before {
             break;
         }
     }

@@ -1,11 +1,10 @@
-//! The error of linear interpolation on a triangle, and the moves and flips that lower it. Vertices move in groups without edges between
-//! them: those of a group can move at once.
+//! Moves and flips that lower the error. Vertices move in groups without edges between them: those of a group can move at once.
 
+use super::objective::Place;
 use super::{Sheet, Work, is_allowed};
 use crate::dual::Kind;
 use crate::elementary::Elementary;
-use crate::geometry::{Node, Point, Vector, radon};
-use crate::metric::Norm;
+use crate::geometry::{Jet, Point, Tensor, Vector};
 use crate::parallel::prelude::*;
 use crate::triangulation::{HalfEdge, Rounds, Triangulation, VertexId, flip_in_rounds};
 
@@ -70,8 +69,11 @@ impl<S: Sheet> Work<S> {
             let at = self.sheet.stepped(v, &frame, step)?;
             Some(Place { at, value: self.sheet.value(at) })
         };
-        let now = error_at(here);
-        let [mut x, mut y] = frame.newton(now, |step| place(step).map_or(f64::INFINITY, error_at))?;
+        let around = match self.expansion(v, &ring, &frame) {
+            Some(jet) => jet,
+            None => frame.differences(error_at(here), |step| place(step).map_or(f64::INFINITY, error_at)),
+        };
+        let (now, [mut x, mut y]) = (around.value, frame.newton(around)?);
         for _ in 0..TRIALS {
             let there = place([x, y])?;
             if error_at(there) < now && is_allowed(shape_at(here), shape_at(there)) {
@@ -80,6 +82,17 @@ impl<S: Sheet> Work<S> {
             (x, y) = (x * SHORTER, y * SHORTER);
         }
         None
+    }
+
+    /// The error around a vertex, by derivatives of the function in a frame, where these are known.
+    fn expansion(&self, v: VertexId, ring: &[[VertexId; 2]], frame: &Frame) -> Option<Jet> {
+        let here = self.place(v);
+        let known = self.sheet.jet_within([here.at; 3], [1.0, 0.0, 0.0], frame)?;
+        let moved = [[1.0, 0.0], [0.0, 1.0]].map(|step| self.sheet.stepped(v, frame, step));
+        ring.iter().try_fold(Jet::default(), |sum, &[a, b]| {
+            let corners = [here, self.place(a), self.place(b)];
+            Some(sum + self.objective.expansion(&self.sheet, corners, frame, known, moved)?)
+        })
     }
 
     /// The directions and lengths in which a vertex can move: those of the ellipse of inertia of its neighbours.
@@ -105,19 +118,32 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// The step to the minimum of a quadratic through values around, made convex where it is not.
-    fn newton(&self, now: f64, error: impl Fn([f64; 2]) -> f64) -> Option<[f64; 2]> {
+    /// Both directions.
+    pub(super) fn axes(&self) -> [Vector; 2] {
+        [self.first, self.second.unwrap_or_default()]
+    }
+
+    /// Derivatives by differences of values.
+    fn differences(&self, now: f64, error: impl Fn([f64; 2]) -> f64) -> Jet {
         let h = STEP;
+        let both = |two: [f64; 2]| ((two[0] - two[1]) / (2.0 * h), (two[0] - 2.0 * now + two[1]) / (h * h));
         let (right, left) = (error([h, 0.0]), error([-h, 0.0]));
-        let (gx, xx) = ((right - left) / (2.0 * h), (right - 2.0 * now + left) / (h * h));
-        let step = if self.second.is_some() {
-            let (up, down) = (error([0.0, h]), error([0.0, -h]));
-            let (gy, yy) = ((up - down) / (2.0 * h), (up - 2.0 * now + down) / (h * h));
-            let corners = error([h, h]) + error([-h, -h]);
-            let xy = (corners - right - left - up - down + 2.0 * now) / (2.0 * h * h);
-            descent([gx, gy], [xx, xy, yy])?
-        } else {
-            [-gx / xx.abs(), 0.0]
+        let (x, xx) = both([right, left]);
+        if self.second.is_none() {
+            return Jet { value: now, gradient: Vector::new(x, 0.0), hessian: Tensor::new(xx, 0.0, 0.0) };
+        }
+        let (up, down) = (error([0.0, h]), error([0.0, -h]));
+        let (y, yy) = both([up, down]);
+        let corners = error([h, h]) + error([-h, -h]);
+        let xy = (corners - right - left - up - down + 2.0 * now) / (2.0 * h * h);
+        Jet { value: now, gradient: Vector::new(x, y), hessian: Tensor::new(xx, xy, yy) }
+    }
+
+    /// The step to the minimum of a quadratic, made convex where it is not.
+    fn newton(&self, Jet { gradient, hessian, .. }: Jet) -> Option<[f64; 2]> {
+        let step = match self.second {
+            Some(_) => descent(gradient, hessian)?,
+            None => [-gradient.x / hessian.xx.abs(), 0.0],
         };
         let length = step[0].hypotenuse(step[1]);
         let share = (LONGEST / length).min(1.0);
@@ -127,7 +153,7 @@ impl Frame {
 
 /// Minus the inverse of a symmetric matrix, of which eigenvalues count by their size, times a gradient. `None` where that is
 /// not finite.
-fn descent([gx, gy]: [f64; 2], [xx, xy, yy]: [f64; 3]) -> Option<[f64; 2]> {
+fn descent(Vector { x: gx, y: gy }: Vector, Tensor { xx, xy, yy }: Tensor) -> Option<[f64; 2]> {
     let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
     let radius = half.hypotenuse(xy);
     let (sine, cosine) = (0.5 * xy.arctangent_over(half)).sine_and_cosine();
@@ -161,66 +187,6 @@ pub(super) fn colours(topology: &Triangulation, can_move: impl Fn(VertexId) -> b
         groups[free].push(v);
     }
     groups
-}
-
-/// A greater exponent counts as this one: powers of errors would differ by too much to be added.
-const LARGEST_EXPONENT: f64 = 8.0;
-
-/// The norm that polishing goes by where this one is asked for: L^8 for all above.
-pub(crate) fn polishing_norm(norm: Norm) -> Norm {
-    Norm::new(norm.exponent().min(LARGEST_EXPONENT)).unwrap_or(norm)
-}
-
-/// What is to be made small: the integral of |f - its linear interpolation|^p, in a unit of its own for f.
-#[derive(Clone, Copy)]
-pub(super) struct Objective {
-    exponent: f64,
-    unit: f64,
-    nodes: [Node; 7],
-}
-
-/// A vertex, as errors see it.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Place<At> {
-    pub(super) at: At,
-    pub(super) value: f64,
-}
-
-impl Objective {
-    /// Errors are measured in shares of `unit`, which is positive.
-    pub(super) fn new(norm: Norm, unit: f64) -> Self {
-        Self { exponent: polishing_norm(norm).exponent(), unit, nodes: radon() }
-    }
-
-    /// The triangle's share, by seven values of the function; infinite of a triangle that is turned over.
-    ///
-    /// Three values in the middles of the edges would not do: minimised, they find places where the function meets its
-    /// interpolation there and nowhere else.
-    pub(super) fn of<S: Sheet>(&self, sheet: &S, corners: [Place<S::At>; 3]) -> f64 {
-        let [a, b, c] = corners;
-        let places = corners.map(|corner| corner.at);
-        let area = sheet.area(places);
-        if area <= 0.0 {
-            return f64::INFINITY;
-        }
-        let share = |&([u, v, w], weight): &Node| {
-            let error = (sheet.value_within(places, [u, v, w]) - (u * a.value + v * b.value + w * c.value)) / self.unit;
-            weight * self.power(error)
-        };
-        area * self.nodes.iter().map(share).sum::<f64>()
-    }
-
-    fn power(&self, error: f64) -> f64 {
-        // Exact on purpose: the default, and the fast one.
-        #[expect(clippy::float_cmp)]
-        let is_square = self.exponent == 2.0;
-        if is_square { error * error } else { error.abs().raised_to(self.exponent) }
-    }
-
-    /// The norm of the error from the sum of all shares.
-    pub(super) fn norm(&self, sum: f64) -> f64 {
-        self.unit * sum.raised_to(1.0 / self.exponent)
-    }
 }
 
 /// Rounds of flips in a sweep, at most: the next sweep has more.
@@ -279,8 +245,12 @@ impl<S: Sheet> Rounds for Work<S> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::plane::Flat;
     use super::*;
+    use crate::domain::Domain;
     use crate::geometry::Point;
+    use crate::metric::{Expression, Norm, Snapshot, Variables};
+    use crate::optimise::springs::tests::seeded;
     use crate::planar::delaunay;
 
     #[test]
@@ -288,16 +258,52 @@ mod tests {
         let (first, second) = (Vector::new(1.0, 0.0), Some(Vector::new(0.0, 1.0)));
         let frame = Frame { segment: None, first, second };
         let error = |[x, y]: [f64; 2]| 3.0 * (x - 0.1).powi(2) + 2.0 * (x - 0.1) * (y + 0.2) + (y + 0.2).powi(2);
-        let [x, y] = frame.newton(error([0.0, 0.0]), error).unwrap();
+        let [x, y] = frame.newton(frame.differences(error([0.0, 0.0]), error)).unwrap();
         assert!((x - 0.1).abs() < 1e-9 && (y + 0.2).abs() < 1e-9, "{x} {y}");
     }
 
     #[test]
+    fn derivatives_of_the_error_are_those_of_its_values() {
+        let text = "tanh(3*x - y) + x^3*y";
+        let function = Snapshot::from(Expression::parse(text, Variables::Plane).unwrap());
+        let domain = Domain::shape("rect:0,0,1,1").unwrap();
+        let metric = |_: Point| Tensor::isotropic(0.2);
+        let dual = seeded(&domain, &metric);
+        for p in [1.0, 2.0, 3.0] {
+            let work = Work::new(Flat::new(&dual, &function), Norm::new(p).unwrap()).unwrap().unwrap();
+            for v in work.sheet.topology().vertices().filter(|&v| work.sheet.kind(v) == Kind::Free) {
+                let topology = work.sheet.topology();
+                let ring: Vec<[VertexId; 2]> =
+                    topology.star(v).map(|h| [topology.target(h), topology.apex(h)]).collect();
+                let frame = work.frame(v, &ring).unwrap();
+                let error_at = |[x, y]: [f64; 2]| -> f64 {
+                    // Small steps, for differences of the function are taken where it has a third derivative, too.
+                    let at = work.sheet.stepped(v, &frame, [0.01 * x, 0.01 * y]).unwrap();
+                    let there = Place { at, value: work.sheet.value(at) };
+                    ring.iter()
+                        .map(|&[a, b]| work.objective.of(&work.sheet, [there, work.place(a), work.place(b)]))
+                        .sum()
+                };
+                let exact = work.expansion(v, &ring, &frame).unwrap();
+                let rough = frame.differences(error_at([0.0; 2]), error_at);
+                assert_eq!(exact.value.to_bits(), rough.value.to_bits());
+                let off = exact.gradient * 0.01 - rough.gradient;
+                assert!(off.norm() < 1e-5 * (rough.gradient.norm() + exact.value), "{p}: {exact:?} {rough:?}");
+                if p > 1.0 {
+                    let off = exact.hessian * 1e-4 - rough.hessian;
+                    let size = rough.hessian.xx.abs() + rough.hessian.yy.abs();
+                    assert!(off.xx.abs() + off.xy.abs() + off.yy.abs() < 1e-2 * size, "{p}: {exact:?} {rough:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
     fn where_it_is_not_convex_the_step_goes_downhill() {
-        let [x, y] = descent([1.0, -2.0], [-3.0, 0.5, -1.0]).unwrap();
+        let [x, y] = descent(Vector::new(1.0, -2.0), Tensor::new(-3.0, 0.5, -1.0)).unwrap();
         assert!(x - 2.0 * y < 0.0, "{x} {y}");
-        assert_eq!(descent([1.0, f64::NAN], [1.0, 0.0, 1.0]), None);
-        assert_eq!(descent([0.0, 0.0], [0.0, 0.0, 0.0]), None);
+        assert_eq!(descent(Vector::new(1.0, f64::NAN), Tensor::IDENTITY), None);
+        assert_eq!(descent(Vector::default(), Tensor::default()), None);
     }
 
     #[test]

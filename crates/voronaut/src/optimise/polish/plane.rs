@@ -3,7 +3,7 @@
 use super::Sheet;
 use super::moves::Frame;
 use crate::dual::{Dual, Kind, Moving};
-use crate::geometry::{Point, Vector, combine, signed_area};
+use crate::geometry::{Jet, Point, Vector, combine, signed_area};
 use crate::metric::ScalarField;
 use crate::planar::Planar;
 use crate::triangulation::{HalfEdge, Triangulation, VertexId};
@@ -68,6 +68,10 @@ impl Sheet for Flat<'_> {
 
     fn value_within(&self, corners: [Point; 3], weights: [f64; 3]) -> f64 {
         self.function.value(combine(weights, corners))
+    }
+
+    fn jet_within(&self, corners: [Point; 3], weights: [f64; 3], frame: &Frame) -> Option<Jet> {
+        Some(self.function.jet(combine(weights, corners))?.along(frame.axes()))
     }
 
     fn shape(&self, vertices: [VertexId; 3], corners: [Point; 3]) -> f64 {
