@@ -77,7 +77,7 @@ fn sampled<'a>(job: &mut Job<'a>, domain: &Domain, unit: Option<usize>) -> Resul
     }
     demand_memory(count as f64, most(unit) as f64, job.options.memory_limit)?;
     let mut dual = job.watch.time("seed", || job.seed(&domain, None, &plan, count, scale))?;
-    let relaxation = job.watch.time("relax", || job.relax(&mut dual, None))?;
+    let relaxation = job.watch.time("relax", || job.relax(&mut dual, None, job.options.effort))?;
     Ok(Start { domain, dual, relaxation })
 }
 

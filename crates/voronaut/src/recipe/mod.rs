@@ -174,9 +174,8 @@ fn mesh_straight(
     demand_memory(count as f64, on_canvas, options.memory_limit)?;
     let canvas = job.canvas(&domain, count)?;
     let mut dual = watch.time("seed", || job.seed(&domain, canvas.as_ref(), &plan, count, scale))?;
-    let relaxation = watch.time("relax", || job.relax(&mut dual, canvas.as_ref()))?;
+    let (relaxation, aim) = job.relaxed(&mut dual, canvas.as_ref(), aim.filter(|_| job.may_polish()))?;
     let protected = job.protect(&domain, &mut dual)?;
-    let aim = aim.map(|aim| job.is_to_be_polished(&mut dual, aim).map(|is| is.then_some(aim))).transpose()?.flatten();
     // Polishing decides on the edges.
     let settled = if aim.is_none() && settles {
         watch.time("settle", || settle::settle(&mut dual, &domain, job.options, job.progress))?
@@ -348,12 +347,31 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// Whether the mesh is polished: not where protection was asked for, which it would undo, where there is nothing to gain, or
-    /// where the function is not known well enough.
-    fn is_to_be_polished(&mut self, dual: &mut Dual, aim: Aim) -> Result<bool> {
-        if self.options.polish == 0 || self.options.seeding == Seeding::Protected {
-            return Ok(false);
+    /// Relaxes, only roughly where polishing follows; and what it is polished for.
+    fn relaxed<'b>(
+        &mut self,
+        dual: &mut Dual,
+        canvas: Option<&Canvas>,
+        aim: Option<Aim<'b>>,
+    ) -> Result<(Relaxed, Option<Aim<'b>>)> {
+        let (effort, watch) = (self.options.effort, self.watch);
+        let relax = |dual: &mut Dual, job: &Self, effort| watch.time("relax", || job.relax(dual, canvas, effort));
+        let Some(aim) = aim else { return Ok((relax(dual, self, effort)?, None)) };
+        let mut relaxed = relax(dual, self, effort.before_polishing())?;
+        if self.is_known(dual, aim)? {
+            return Ok((relaxed, Some(aim)));
         }
+        relaxed.append(relax(dual, self, effort)?);
+        Ok((relaxed, None))
+    }
+
+    /// Whether meshes may be polished: not where protection was asked for, which it would undo.
+    fn may_polish(&self) -> bool {
+        self.options.polish > 0 && self.options.seeding != Seeding::Protected
+    }
+
+    /// Whether there is something to gain, and the function is known well enough for it.
+    fn is_known(&mut self, dual: &mut Dual, aim: Aim) -> Result<bool> {
         let now = polish(dual, aim.function, aim.norm, Patience::NONE, self.progress)?;
         let Some(&error) = now.error.first() else { return Ok(false) };
         if error < KNOWN * aim.known_to {

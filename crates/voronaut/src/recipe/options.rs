@@ -131,6 +131,11 @@ impl Effort {
         }
     }
 
+    /// What is spent on relaxing what will be polished, which moves seeds and flips edges by the error itself.
+    pub(super) fn before_polishing(self) -> Self {
+        if self == Effort::Normal { Effort::Fast } else { self }
+    }
+
     /// Whether work goes on that may gain nothing.
     pub(super) fn is_thorough(self) -> bool {
         self == Effort::Best

@@ -1,7 +1,7 @@
 //! Steps of the main job in the plane: seeding on a canvas, relaxing, and the last pass, which decides on the edges by both roads and
 //! says how sure that is. And the time that steps take.
 
-use super::options::{Centroid, Seeding};
+use super::options::{self, Centroid, Seeding};
 use super::{BLOCKED_SHARE, EXCHANGED_SHARE, Job, MeshOptions};
 use crate::canvas::{Canvas, CanvasFigures};
 use crate::diagram::{Care, Diagram, Flat, Ground};
@@ -85,15 +85,14 @@ impl Job<'_> {
     ///
     /// # Errors
     /// The metric is found invalid at a seed.
-    pub(super) fn relax(&mut self, dual: &mut Dual, canvas: Option<&Canvas>) -> Result<Relaxed> {
+    pub(super) fn relax(&self, dual: &mut Dual, canvas: Option<&Canvas>, effort: options::Effort) -> Result<Relaxed> {
         dual.reorder();
         let steps = self.options.lloyd;
         self.progress.begin("relaxing", steps as u64)?;
         let field = self.field;
         let cells = cells(self.options.centroid, canvas.map(|canvas| Flat { canvas, field }));
-        let (patience, parts) =
-            (Patience { steps, gain: self.options.effort.gain() }, self.options.effort.parts(self.is_even));
-        let relaxed = self.relax_in_parts(dual, &cells, parts, patience, self.progress)?;
+        let patience = Patience { steps, gain: effort.gain() };
+        let relaxed = self.relax_in_parts(dual, &cells, effort.parts(self.is_even), patience, self.progress)?;
         self.fit_scale(dual);
         if self.exchanges() {
             mend_worst(dual, (dual.topology().face_count() as f64 * MENDED_SHARE).ceil() as usize);

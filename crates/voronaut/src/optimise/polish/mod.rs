@@ -16,7 +16,7 @@ use crate::geometry::{Jet, Vector};
 use crate::metric::{Expression, Norm, ScalarField};
 use crate::parallel::prelude::*;
 use crate::progress::Progress;
-use crate::triangulation::{HalfEdge, Triangulation, VertexId};
+use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
 use moves::Frame;
 pub(crate) use objective::polishing_norm;
 use objective::{Objective, Place};
@@ -157,6 +157,10 @@ struct Work<S: Sheet> {
     sheet: S,
     objective: Objective,
     places: Vec<Place<S::At>>,
+    /// The error of each face as it was when it was last summed, or flipped.
+    shares: Vec<f64>,
+    /// Whether a vertex has moved since.
+    has_moved: Vec<bool>,
     /// Whether something may be gained around a vertex: it or a neighbour has moved, or an edge around it was flipped, since it was tried.
     awake: Vec<bool>,
 }
@@ -177,8 +181,9 @@ impl<S: Sheet> Work<S> {
             (least, most) = (least.min(value), most.max(value));
         }
         let objective = Objective::new(norm, most - least);
-        let awake = vec![true; places.len()];
-        Ok((most > least).then_some(Self { sheet, objective, places, awake }))
+        let [awake, has_moved] = [true, true].map(|all| vec![all; places.len()]);
+        let shares = vec![0.0; sheet.topology().face_slots()];
+        Ok((most > least).then_some(Self { sheet, objective, places, shares, has_moved, awake }))
     }
 
     fn place(&self, v: VertexId) -> Place<S::At> {
@@ -186,11 +191,22 @@ impl<S: Sheet> Work<S> {
     }
 
     /// The norm of the error on all faces.
-    fn norm(&self) -> f64 {
-        let faces: Vec<_> = self.sheet.topology().faces().collect();
-        let share = |&f| self.objective.of(&self.sheet, self.sheet.topology().corners(f).map(|v| self.place(v)));
+    fn norm(&mut self) -> f64 {
+        let faces: Vec<FaceId> = self.sheet.topology().faces().collect();
+        let is_old = |f: FaceId| self.sheet.topology().corners(f).iter().any(|v| self.has_moved[v.index()]);
+        let share = |&f: &FaceId| if is_old(f) { self.share(f) } else { self.shares[f.index()] };
         let shares: Vec<f64> = faces.par_iter().with_min_len(64).map(share).collect();
-        self.objective.norm(shares.iter().sum())
+        let sum = shares.iter().sum();
+        for (f, share) in faces.into_iter().zip(shares) {
+            self.shares[f.index()] = share;
+        }
+        self.has_moved.fill(false);
+        self.objective.norm(sum)
+    }
+
+    /// The error of a face.
+    fn share(&self, f: FaceId) -> f64 {
+        self.objective.of(&self.sheet, self.sheet.topology().corners(f).map(|v| self.place(v)))
     }
 
     fn shape(&self, vertices: [VertexId; 3], corners: [Place<S::At>; 3]) -> f64 {

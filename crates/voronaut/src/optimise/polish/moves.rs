@@ -34,6 +34,7 @@ impl<S: Sheet> Work<S> {
                 let Some((place, step)) = better else { continue };
                 if self.sheet.move_vertex(v, place.at) {
                     self.places[v.index()] = place;
+                    self.has_moved[v.index()] = true;
                     moved += 1;
                     if step > SMALL {
                         self.wake(v);
@@ -200,12 +201,12 @@ impl<S: Sheet> Work<S> {
         flip_in_rounds(self, ROUNDS)
     }
 
-    /// By how much a flip would lower the error; `None` where it would not, or may not be.
+    /// By how much a flip would lower the error, of which all shares are known; `None` where it would not, or may not be.
     fn gain(&self, h: HalfEdge) -> Option<f64> {
         let [a, b, c, d] = self.sheet.topology().quad(h).filter(|_| self.sheet.may_flip(h))?;
         let of = |vertices: [VertexId; 3]| self.objective.of(&self.sheet, self.places_of(vertices));
         let (old, new) = ([[a, b, c], [b, a, d]], [[d, b, c], [c, a, d]]);
-        let before: f64 = old.into_iter().map(of).sum();
+        let before: f64 = self.sheet.topology().sides(h).map(|side| self.shares[side.face().index()]).sum();
         let gain = before - new.into_iter().map(of).sum::<f64>();
         if gain.is_nan() || gain <= GAIN * before {
             return None;
@@ -235,6 +236,9 @@ impl<S: Sheet> Rounds for Work<S> {
     fn flip(&mut self, h: HalfEdge) -> bool {
         let is_flipped = self.sheet.flip(h);
         if is_flipped {
+            for side in self.sheet.topology().sides(h) {
+                self.shares[side.face().index()] = self.share(side.face());
+            }
             for v in self.sheet.topology().ends(h) {
                 self.wake(v);
             }
