@@ -53,7 +53,6 @@ Examples:
   voronaut mesh spot.obj --metric curvature -n 1020 --fit -o spot-1020.obj --picture spot.png --show cells,mesh";
 
 #[derive(Debug, Args)]
-#[expect(clippy::struct_excessive_bools, reason = "one per option")]
 pub(crate) struct MeshArgs {
     /// What to mesh: a file or a shape
     pub(crate) domain: String,

@@ -46,7 +46,22 @@ impl Norm {
         if self.0.is_infinite() {
             return 1.0;
         }
-        bounding.determinant().raised_to(-1.0 / ((degree as f64 + 1.0) * self.0 + 2.0))
+        let determinant = bounding.determinant();
+        if degree == 1 && self.is_square() {
+            // Roots take a third of the time of a power.
+            return 1.0 / determinant.sqrt().cube_root();
+        }
+        determinant.raised_to(-1.0 / ((degree as f64 + 1.0) * self.0 + 2.0))
+    }
+
+    /// |error|^p, for finite p.
+    pub(crate) fn power(self, error: f64) -> f64 {
+        if self.is_square() { error * error } else { error.abs().raised_to(self.0) }
+    }
+
+    /// Whether p is 2: the default, and the fast one.
+    pub(crate) fn is_square(self) -> bool {
+        self.0.total_cmp(&2.0).is_eq()
     }
 }
 

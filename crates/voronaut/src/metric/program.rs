@@ -141,7 +141,7 @@ impl Op {
 /// Instructions, and how many values they have at once at most: those that wait, and those that are kept.
 #[derive(Clone, Debug)]
 pub(super) struct Program {
-    pub(super) code: Vec<Op>,
+    pub(super) code: Box<[Op]>,
     pub(super) height: usize,
 }
 
@@ -151,8 +151,8 @@ impl Program {
         // What is not there need not be set to zero. Values that are kept are at the stack's end, and there in any stack that is a part of the
         // whole. Eight jets take as long to clear as one takes to compute.
         match self.height {
-            ..=8 => run_on::<N, RESULTS, 8>(&self.code, variables),
-            ..=16 => run_on::<N, RESULTS, 16>(&self.code, variables),
+            0..=8 => run_on::<N, RESULTS, 8>(&self.code, variables),
+            9..=16 => run_on::<N, RESULTS, 16>(&self.code, variables),
             _ => run_on::<N, RESULTS, STACK>(&self.code, variables),
         }
     }

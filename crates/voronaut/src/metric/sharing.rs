@@ -15,7 +15,7 @@ pub(super) fn shared(programs: &[Vec<Op>]) -> Program {
     for step in steps {
         writer.write(step);
     }
-    Program { code: writer.code, height: height + writer.most }
+    Program { code: writer.code.into(), height: height + writer.most }
 }
 
 /// A program without places to jump to.
@@ -163,7 +163,7 @@ mod tests {
 
     fn code(texts: &[&str]) -> Vec<Op> {
         let parse = |text: &&str| Expression::program(text, 0..text.len(), Variables::Plane, "expression").unwrap();
-        shared(&texts.iter().map(parse).collect::<Vec<_>>()).code
+        shared(&texts.iter().map(parse).collect::<Vec<_>>()).code.into_vec()
     }
 
     fn calls(texts: &[&str]) -> usize {

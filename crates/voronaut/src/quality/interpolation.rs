@@ -114,8 +114,7 @@ fn summed(found: &[(f64, f64, Point3)], is_planar: bool, norm: Norm) -> Result<I
         return Ok(InterpolationError { norm: max, p: Exponent::Infinite("inf"), max: max_spot });
     }
     // Powers of shares of the greatest: they neither overflow nor all vanish.
-    let sum: f64 =
-        found.iter().map(|&(sum, own, _)| if own > 0.0 { sum * (own / max).raised_to(p) } else { 0.0 }).sum();
+    let sum: f64 = found.iter().map(|&(sum, own, _)| if own > 0.0 { sum * norm.power(own / max) } else { 0.0 }).sum();
     let value = if max > 0.0 { max * sum.raised_to(1.0 / p) } else { 0.0 };
     Ok(InterpolationError { norm: value, p: Exponent::Finite(p), max: max_spot })
 }
@@ -190,7 +189,7 @@ fn of_errors(errors: &[(f64, Point3, f64)], norm: Norm) -> (f64, f64, Point3) {
         if next.0 > most.0 || next.0.is_nan() { (next.0, next.1) } else { most }
     };
     let (most, at) = errors.iter().fold((0.0, errors[0].1), greater);
-    let power = |error: f64| if most > 0.0 { (error / most).raised_to(norm.exponent()) } else { 0.0 };
+    let power = |error: f64| if most > 0.0 { norm.power(error / most) } else { 0.0 };
     (errors.iter().map(|&(error, _, weight)| weight * power(error)).sum(), most, at)
 }
 

@@ -13,7 +13,7 @@ const STEP: f64 = 0.03;
 /// Longest move, in the same unit.
 const LONGEST: f64 = 0.5;
 /// Moves shorter than this change too little for neighbours to be tried again.
-const SMALL: f64 = 0.02;
+const SMALL: f64 = 0.03;
 /// Shorter moves that are tried when a move does not lower the error, and by how much they are shorter.
 const TRIALS: usize = 5;
 const SHORTER: f64 = 0.4;

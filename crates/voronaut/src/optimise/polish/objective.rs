@@ -24,7 +24,7 @@ pub(crate) fn polishing_norm(norm: Norm) -> Norm {
 /// What is to be made small: the integral of |f - its linear interpolation|^p, in a unit of its own for f.
 #[derive(Clone, Copy)]
 pub(super) struct Objective {
-    exponent: f64,
+    norm: Norm,
     unit: f64,
     nodes: [Node; 7],
 }
@@ -32,7 +32,7 @@ pub(super) struct Objective {
 impl Objective {
     /// Errors are measured in shares of `unit`, which is positive.
     pub(super) fn new(norm: Norm, unit: f64) -> Self {
-        Self { exponent: polishing_norm(norm).exponent(), unit, nodes: radon() }
+        Self { norm: polishing_norm(norm), unit, nodes: radon() }
     }
 
     /// The triangle's share, by seven values of the function; infinite of a triangle that is turned over.
@@ -49,7 +49,7 @@ impl Objective {
         let share = |&([u, v, w], weight): &Node| {
             let error =
                 (sheet.value_within(places, [u, v, w]) - (u * a.value + v * b.value + w * c.value)) * (1.0 / self.unit);
-            weight * self.power(error)
+            weight * self.norm.power(error)
         };
         area * self.nodes.iter().map(share).sum::<f64>()
     }
@@ -83,25 +83,17 @@ impl Objective {
     }
 
     fn power_of(&self, error: Jet) -> Jet {
-        let (p, size) = (self.exponent, error.value.abs());
-        let value = self.power(error.value);
-        if size == 0.0 {
+        let (p, value) = (self.norm.exponent(), self.norm.power(error.value));
+        if error.value == 0.0 {
             // Of a square alone there is a second derivative to keep; below its is infinite.
-            return error.chain(0.0, [0.0, if p == 2.0 { 2.0 } else { 0.0 }]);
+            return error.chain(0.0, [0.0, if self.norm.is_square() { 2.0 } else { 0.0 }]);
         }
         let first = p * value / error.value;
         error.chain(value, [first, (p - 1.0) * first / error.value])
     }
 
-    fn power(&self, error: f64) -> f64 {
-        // Exact on purpose: the default, and the fast one.
-        #[expect(clippy::float_cmp)]
-        let is_square = self.exponent == 2.0;
-        if is_square { error * error } else { error.abs().raised_to(self.exponent) }
-    }
-
     /// The norm of the error from the sum of all shares.
     pub(super) fn norm(&self, sum: f64) -> f64 {
-        self.unit * sum.raised_to(1.0 / self.exponent)
+        self.unit * sum.raised_to(1.0 / self.norm.exponent())
     }
 }
