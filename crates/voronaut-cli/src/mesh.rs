@@ -341,13 +341,14 @@ fn on_surface(args: &MeshArgs, world: &World, input: Input, mended: &Mended, sta
         Some(_) => args.in_parts.all(world, &args.run, field, &options, &used)?,
         None => recipe::mesh_surface(input, metric.as_ref(), aim, &options, &*world.progress(&args.run))?,
     };
-    let (mut report, unmet) = account::on_surface(&meshed, input, mended, metric.as_ref(), used)?;
+    let made_for = meshed.made_for(metric.as_ref(), &input.surface);
+    let (mut report, unmet) = account::on_surface(&meshed, input, mended, &made_for, used)?;
     if args.in_parts.parts.is_some() {
         // As in the plane.
         (report.dual, report.relaxation) = (None, None);
     }
     report.interpolation = interpolated(args, input, &meshed.mesh)?;
-    let scaled = Scaled { field: metric.as_ref(), factor: meshed.metric_scale };
+    let scaled = Scaled { field: &made_for, factor: meshed.metric_scale };
     report.seconds.total = world.seconds() - start;
     let drawn = whole.as_ref().filter(|_| args.outputs.picture.is_some());
     let picture = drawn.map(|whole| drawn_on(args, world, whole, &meshed, &unmet)).transpose()?;

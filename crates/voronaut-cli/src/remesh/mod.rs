@@ -108,6 +108,7 @@ fn on_surface(args: &RemeshArgs, world: &World, input: Input, mended: &Mended, b
     let options = MeshOptions { fit: !args.no_fit, stiffness: STIFFNESS, ..options(args, Effort::Normal) };
     let meshed = recipe::mesh_surface(&input, &field, None, &options, bar)?;
     let used = as_used(args, &sizing, metric_file.as_deref());
+    let field = meshed.made_for(&field, &input.surface);
     let (report, _) = account::on_surface(&meshed, &input, mended, &field, used)?;
     let solution = sizes.solution(&field, meshed.metric_scale, &input.surface, &meshed.mesh.points)?;
     Ok(Made { mesh: meshed.mesh, report, solution })

@@ -28,6 +28,7 @@ pub use meetings::{Excused, Meetings};
 pub use metric_quality::{Angles, EdgeLengths, MetricQuality, Quality, Spot, Worst, metric_quality};
 pub(crate) use self_intersections::crossings;
 pub use self_intersections::{Crossing, crossing_edges};
+pub(crate) use surface_fidelity::distances_around;
 pub use surface_fidelity::{Deviation, NormalDeviation, SurfaceFidelity, surface_fidelity};
 pub use surface_quality::surface_quality;
 pub use unmet::{

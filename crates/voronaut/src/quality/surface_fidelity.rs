@@ -11,6 +11,7 @@ use crate::lists::distinct;
 use crate::mesh::Mesh;
 use crate::parallel::prelude::*;
 use crate::surface::{Implicit, Nearest, Surface, closest_zero};
+use crate::triangulation::FaceId;
 
 /// Euclidean distances between a mesh and a surface, and angles between their normals.
 ///
@@ -101,6 +102,39 @@ pub fn surface_fidelity(mesh: &Mesh, surface: &Surface, implicit: Option<&dyn Im
         reversed: normals.reversed,
         diagonal: target.diagonal,
     })
+}
+
+/// For each vertex of the surface the greatest distance between mesh and surface that is seen at some points of its triangles, or of
+/// those of the mesh there: corners, middles of edges and centroids.
+pub(crate) fn distances_around(mesh: &Mesh, surface: &Surface, implicit: Option<&dyn Implicit>) -> Vec<f64> {
+    let target = Target::new(surface, implicit);
+    let triangles: Vec<[Point3; 3]> = mesh.triangles.iter().map(|&t| mesh.positions_of(t)).collect();
+    let tree = Nearest::of(triangles.iter().copied());
+    let there = triangles.par_iter().flat_map_iter(|&corners| {
+        places_of(corners).into_iter().filter_map(|p| {
+            let found = target.nearest.closest(surface, p)?;
+            let distance = implicit.map_or(found.distance, |_| target.closest(p).position.distance(p));
+            Some((found.place.face, distance))
+        })
+    });
+    let faces: Vec<FaceId> = surface.topology().faces().collect();
+    let back = faces.par_iter().flat_map_iter(|&f| {
+        let points = places_of(surface.triangle(f)).into_iter();
+        points.filter_map(|p| Some((f, tree.distance(target.lift(p))?))).collect::<Vec<_>>()
+    });
+    let found: Vec<(FaceId, f64)> = there.chain(back).collect();
+    let mut most = vec![0.0_f64; surface.positions().len()];
+    for (f, distance) in found {
+        for v in surface.topology().corners(f) {
+            most[v.index()] = most[v.index()].max(distance);
+        }
+    }
+    most
+}
+
+fn places_of([a, b, c]: [Point3; 3]) -> [Point3; 7] {
+    let centroid = Point3::weighted([a, b, c], [1.0 / 3.0; 3]);
+    [a, b, c, a.lerp(b, 0.5), b.lerp(c, 0.5), c.lerp(a, 0.5), centroid]
 }
 
 /// Distances below this share of the diagonal are rounding.

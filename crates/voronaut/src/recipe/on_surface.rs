@@ -11,19 +11,18 @@ use crate::mesh::Mesh;
 use crate::metric::{Expression, Norm};
 use crate::optimise::{FitOptions, Patience, Polished, fit, polish_on_surface};
 use crate::progress::Progress;
-use crate::quality::{self, Meetings, SurfaceFidelity};
+use crate::quality::{self, Deviation, Meetings, Position, SurfaceFidelity, distances_around};
 use crate::sampling::{MeasuredCurves, demand_memory};
-use crate::surface::metric::{Closer, SurfaceMetric};
+use crate::surface::metric::{Closer, Finer, SurfaceMetric};
 use crate::surface::{Component, Implicit, Input};
 
 /// Vertices of the triangles on which the surface is measured first.
 const MEASURING: usize = 20_000;
-/// Rounds of more vertices for the sake of the distance to the surface at most, and how many times as many at most in one.
-const ROUNDS: usize = 5;
-const MOST_MORE: f64 = 3.0;
-/// The second round that brings the distance down by less than this factor, beside the best before, is the last: facets of the surface,
-/// not the number of vertices, keep it up. One may be chance, for a single triangle is what counts.
-const GAIN: f64 = 1.2;
+/// Rounds of more vertices for the sake of the distance to the surface at most.
+const ROUNDS: usize = 6;
+/// The second round that brings the distance down by less than this factor, beside the best before, is the last: something else than
+/// lengths of edges keeps it up. One may be chance, for a single triangle is what counts.
+const GAIN: f64 = 1.05;
 const IDLE_ROUNDS: usize = 2;
 /// Where the number of vertices misses what was asked for by a greater share, a note says why.
 const COUNT_TOLERANCE: f64 = 0.01;
@@ -43,7 +42,7 @@ const FARTHEST_PASSES: usize = 5;
 /// Meshes a surface by a metric: features at unit length, the surface's own triangles split and contracted to unit edges, relaxed in
 /// charts; with [`Seeding::Farthest`] seeds are farthest points on a canvas, with [`crate::dual::Road::Canvas`] edges are settled by
 /// geodesics on one. Vertices are on the surface. With a number of vertices asked for the metric is scaled
-/// by one factor to meet it. Features are kept if the surface was cut open along them ([`Input::cut`]); else borders only.
+/// by one factor to meet it; without one, and with a distance to the surface, it is made finer where the mesh would be farther ([`Meshed::finer`]). Features are kept if the surface was cut open along them ([`Input::cut`]); else borders only.
 ///
 /// With a function of space and a norm the mesh is polished in the end, so that interpolating the function on it has the least error in that norm, as
 /// [`mesh_for`](super::mesh_for) does in the plane; the metric is that of the function's second derivatives.
@@ -74,12 +73,16 @@ pub fn mesh_surface(
     let asked = options.hausd.filter(|&hausd| is_open && hausd > 0.0);
     let closer = asked.map(|hausd| Closer::new(metric, input, hausd)).transpose()?;
     let metric = closer.as_ref().map_or(metric, |closer| closer as &dyn SurfaceMetric);
-    let setting = Setting::new(input, metric, aim, options, progress)?;
-    let (mut count, mut scale, complexity) = setting.watch.time("plan", || setting.plan())?;
-    let closed_form_scale = options.vertices.map(|count| closed_form_scale(count, complexity));
+    let (meetings, watch) = (Meetings::of(input.whole_mesh()), Stopwatch::new(progress));
+    let (mut logs, mut scale) = (Vec::new(), None);
     let (mut least, mut idle) = (f64::INFINITY, 0);
     for round in 1.. {
-        let (mut meshed, fidelity) = setting.meshed(count, scale)?;
+        let finer = Finer { field: metric, surface: &input.surface, logs: &logs };
+        let curves = MeasuredCurves::new(input, &finer);
+        let setting =
+            Setting { input, metric: &finer, aim, options, progress, curves, meetings: &meetings, watch: &watch };
+        let plan = watch.time("plan", || setting.plan(scale))?;
+        let (mut meshed, fidelity) = setting.meshed(plan.count, plan.scale)?;
         let distance = fidelity.as_ref().map_or(0.0, |found| found.both.hausdorff);
         let ratio = options.hausd.map_or(0.0, |most| distance / most.max(f64::MIN_POSITIVE));
         idle += usize::from(least < GAIN * ratio);
@@ -89,17 +92,44 @@ pub fn mesh_surface(
             meshed.notes.push(format!("mesh and surface are {distance:.3e} apart where `hausd` asks for {most:.3e}"));
         }
         if ratio <= 1.0 || is_last {
-            setting.watch.time("curve", || curve_onto(&mut meshed, input, &setting.meetings, options.order))?;
+            watch.time("curve", || curve_onto(&mut meshed, input, &meetings, options.order))?;
             let fidelity = if options.order > 1 { setting.fidelity(&meshed.mesh)? } else { fidelity };
-            return Ok(Meshed { fidelity, closed_form_scale, seconds: setting.watch.seconds(), ..meshed });
+            let closed_form_scale = options.vertices.map(|count| closed_form_scale(count, plan.complexity));
+            return Ok(Meshed { fidelity, closed_form_scale, finer: logs, seconds: watch.seconds(), ..meshed });
         }
-        least = least.min(ratio);
-        // Distances fall with the square of the edges: with the number of vertices.
-        let more = (1.1 * ratio).min(MOST_MORE);
-        (count, scale) = ((count as f64 * more).ceil() as usize, scale * more);
-        setting.demand_memory(count)?;
+        (least, scale) = (least.min(ratio), Some(plan.scale));
+        logs = watch.time("check", || too_far(&meshed.mesh, input, &finer, distance / ratio, fidelity.as_ref()))?;
     }
     unreachable!("the last round returns")
+}
+
+/// The logarithms of factors with which the metric will be fine enough for a distance where the mesh is farther from the surface.
+fn too_far(
+    mesh: &Mesh,
+    input: &Input,
+    finer: &Finer,
+    allowed: f64,
+    found: Option<&SurfaceFidelity>,
+) -> Result<Vec<f64>> {
+    let implicit = input.implicit.as_ref().map(|f| f as &dyn Implicit);
+    let mut ratios = distances_around(mesh, &input.surface, implicit);
+    if let Some(Deviation { at: Position::Space(at), hausdorff, .. }) = found.map(|found| found.both) {
+        for v in input.surface.topology().corners(input.closest(at.into())?.face) {
+            ratios[v.index()] = ratios[v.index()].max(hausdorff);
+        }
+    }
+    ratios.iter_mut().for_each(|distance| *distance /= allowed);
+    finer.asked(&ratios)
+}
+
+/// What a mesh is planned to be.
+pub(super) struct SurfacePlan {
+    /// The number of vertices.
+    pub(super) count: usize,
+    /// The factor on the metric for which edges then are of unit length.
+    pub(super) scale: f64,
+    /// The metric's complexity.
+    pub(super) complexity: f64,
 }
 
 /// The area of a mesh.
@@ -132,11 +162,12 @@ impl<'a> Setting<'a> {
         metric: &'a dyn SurfaceMetric,
         aim: Option<(&'a Expression, Norm)>,
         options: &'a MeshOptions,
-        progress: &'a dyn Progress,
+        meetings: &'a Meetings,
+        watch: &'a Stopwatch<'a>,
     ) -> Result<Self> {
-        let (curves, meetings) = (MeasuredCurves::new(input, metric), Meetings::of(input.whole_mesh()));
-        demand_apart(input, &meetings)?;
-        Ok(Self { input, metric, aim, options, progress, curves, meetings, watch: Stopwatch::new(progress) })
+        demand_apart(input, meetings)?;
+        let curves = MeasuredCurves::new(input, metric);
+        Ok(Self { input, metric, aim, options, progress: watch.progress, curves, meetings, watch })
     }
 
     /// That the work for so many vertices fits into memory.
@@ -173,7 +204,7 @@ impl<'a> Setting<'a> {
             0 => self.protect(&mut pass, &mut mesh, &mut notes)?,
             _ => None,
         };
-        demand(self.input, &mesh, &self.meetings)?;
+        demand(self.input, &mesh, self.meetings)?;
         let (surface_net, protection) = match protected {
             Some((net, protection)) => (Some(net), Some(protection)),
             None => (self.options.net.then(|| self.net(&pass)), None),
@@ -232,7 +263,7 @@ impl<'a> Setting<'a> {
         let mesh = pass.mesh();
         let faulty = self.watch.time("check", || {
             self.progress.begin("checking", 1)?;
-            Ok(pass.faulty(&mesh, &self.meetings))
+            Ok(pass.faulty(&mesh, self.meetings))
         })?;
         Ok((mesh, faulty))
     }
@@ -323,7 +354,7 @@ impl<'a> Setting<'a> {
         let input = self.input;
         let fine = input.implicit.as_ref().map(|_| self.fine_surface(mesh.points.len())).transpose()?;
         let fitted = fit(&mesh, fine.as_ref().unwrap_or(&input.surface), &options)?.mesh;
-        if quality::validity_on(&fitted, &self.meetings).valid {
+        if quality::validity_on(&fitted, self.meetings).valid {
             return Ok(fitted);
         }
         notes.push("vertices are on the surface: least-squares positions would not make a valid mesh".into());
@@ -338,32 +369,34 @@ impl<'a> Setting<'a> {
         quality::surface_fidelity(mesh, &self.input.surface, implicit).map(Some)
     }
 
-    /// The number of vertices, the factor on the metric for which edges then are of unit length, and the metric's complexity.
+    /// The number of vertices, the factor on the metric for which edges then are of unit length, if it is not known, and the metric's complexity.
     ///
     /// A triangulation with V vertices has 2 (V - chi) - B faces, B of its edges on the border; each has the area sqrt(3) / 4.
-    pub(super) fn plan(&self) -> Result<(usize, f64, f64)> {
+    pub(super) fn plan(&self, known: Option<f64>) -> Result<SurfacePlan> {
         self.progress.begin("planning", 1)?;
         let area = area_of_surface(self.input, self.metric, MEASURING)?;
         // Of the surface as it was before it was cut: vertices on its cuts count once.
         let chi = self.input.seams.whole().euler as f64;
         let extra = self.curves.extra();
         let vertices = |factor: f64| 2.0 / 3.0_f64.sqrt() * area * factor + extra * factor.sqrt() + chi;
-        let (count, factor) = match (self.options.vertices, self.options.complexity) {
+        let (count, factor) = match (self.options.vertices, known.or(self.options.complexity.map(|all| all / area))) {
             (Some(count), _) => {
                 // The square root of the factor by the quadratic formula.
                 let (a, b, c) = (2.0 / 3.0_f64.sqrt() * area, extra, chi - count as f64);
                 let root = ((b * b - 4.0 * a * c.min(0.0)).sqrt() - b) / (2.0 * a);
                 (count, root * root)
             }
-            (None, Some(complexity)) => (vertices(complexity / area).round() as usize, complexity / area),
-            (None, None) => (vertices(1.0).round() as usize, 1.0),
+            (None, factor) => {
+                let factor = factor.unwrap_or(1.0);
+                (vertices(factor).round() as usize, factor)
+            }
         };
         // Patches with a border have their vertices there.
         let is_closed = |component: &Component| component.borders == 0;
         let least = 4 * self.input.surface.components().into_iter().filter(is_closed).count();
         self.demand_memory(count)?;
-        let factor = if factor > 0.0 { factor } else { 1.0 };
-        Ok((count.max(least), factor, area))
+        let scale = if factor > 0.0 { factor } else { 1.0 };
+        Ok(SurfacePlan { count: count.max(least), scale, complexity: area })
     }
 }
 

@@ -48,8 +48,8 @@ pub(super) struct Setting<'a> {
     pub(super) progress: &'a dyn Progress,
     pub(super) curves: MeasuredCurves<'a>,
     /// Where the surface meets itself.
-    pub(super) meetings: Meetings,
-    pub(super) watch: Stopwatch<'a>,
+    pub(super) meetings: &'a Meetings,
+    pub(super) watch: &'a Stopwatch<'a>,
 }
 
 /// What a pass has come to.

@@ -13,8 +13,9 @@ use crate::metric::{Expression, Norm};
 use crate::parallel::prelude::*;
 use crate::progress::Progress;
 use crate::quality::Meetings;
+use crate::recipe::on_surface::SurfacePlan;
 use crate::recipe::surface_pass::{Setting, demand};
-use crate::recipe::{MeshOptions, mesh_surface};
+use crate::recipe::{MeshOptions, Stopwatch, mesh_surface};
 use crate::sampling::{MetricArc, pieces};
 use crate::surface::metric::SurfaceMetric;
 use crate::surface::{Input, Mark, Place, Surface};
@@ -86,7 +87,9 @@ impl Divisible for OnSurface<'_> {
         }
         // The limit is that of each part.
         let options = MeshOptions { memory_limit: u64::MAX, ..options.clone() };
-        let (vertices, scale, complexity) = Setting::new(self.input, self.metric, None, &options, progress)?.plan()?;
+        let (meetings, watch) = (Meetings::of(self.input.whole_mesh()), Stopwatch::new(progress));
+        let setting = Setting::new(self.input, self.metric, None, &options, &meetings, &watch)?;
+        let SurfacePlan { count: vertices, scale, complexity } = setting.plan(None)?;
         let parts = number_of_parts(vertices, parts)?;
         let mut base = Base::new(*self)?;
         base.refine(COARSE * parts);

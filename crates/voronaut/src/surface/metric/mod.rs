@@ -13,12 +13,14 @@
 //! | [`Sampled`] | `FILE.sol` | tensors or sizes at vertices, log-Euclidean between them |
 //! | [`Sampled`] | what `remesh` makes | sizes at vertices for a distance to the surface, graded ([`Sizing`]) |
 //! | `Closer` | `--hausd` | another field, finer where a distance to the surface asks for it |
+//! | [`Finer`] | `--hausd` | another field, finer where a mesh came out too far from the surface |
 //! | [`Bounded`](crate::metric::Bounded) | `--h-min --h-max --a-max` | another field within limits, in the tangent plane |
 //!
 //! [`Spec`] reads the second column, [`field`] makes the field; `check_tensor3` tells whether a value is a metric.
 
 mod bounded;
 mod curvature;
+mod finer;
 mod gradation;
 mod hessian;
 mod nodal;
@@ -30,6 +32,7 @@ pub(crate) use crate::metric::check_tensor3;
 pub(crate) use bounded::Closer;
 pub(crate) use curvature::fit_curvatures;
 pub(crate) use curvature::{FLOOR, ImplicitCurvature, sampled_curvature};
+pub use finer::Finer;
 pub(crate) use gradation::{grade, grade_tensors};
 pub(crate) use hessian::{CovariantHessian, hessians_on, recovered_on};
 pub(crate) use nodal::TangentPlanes;
