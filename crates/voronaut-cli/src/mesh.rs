@@ -26,7 +26,7 @@ use voronaut::realisation::Realisation;
 use voronaut::recipe::{
     self, Aim, Boundary, Centroid, Effort, GradedAt, Idle, MeshOptions, Meshed, Mesher, Seeding, Task,
 };
-use voronaut::surface::metric::{Scaled, Spec};
+use voronaut::surface::metric::{Finer, Scaled, Spec};
 use voronaut::surface::{Input, Mended};
 use voronaut_draw::{Layers, Sheet};
 use voronaut_io::{Format, Given, Report};
@@ -341,7 +341,7 @@ fn on_surface(args: &MeshArgs, world: &World, input: Input, mended: &Mended, sta
         Some(_) => args.in_parts.all(world, &args.run, field, &options, &used)?,
         None => recipe::mesh_surface(input, metric.as_ref(), aim, &options, &*world.progress(&args.run))?,
     };
-    let made_for = meshed.made_for(metric.as_ref(), &input.surface);
+    let made_for = Finer { field: metric.as_ref(), surface: &input.surface, logs: &meshed.finer };
     let (mut report, unmet) = account::on_surface(&meshed, input, mended, &made_for, used)?;
     if args.in_parts.parts.is_some() {
         // As in the plane.

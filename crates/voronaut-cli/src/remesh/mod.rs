@@ -15,7 +15,7 @@ use voronaut::mesh::{Mesh, Solution};
 use voronaut::progress::Progress;
 use voronaut::quality::fidelity;
 use voronaut::recipe::{self, Asked, Effort, Keep, MeshOptions, RemeshInput};
-use voronaut::surface::metric::Sizing;
+use voronaut::surface::metric::{Finer, Sizing};
 use voronaut::surface::{Input, Mended};
 use voronaut_io::gmsh::Version;
 use voronaut_io::{Format, Given, Report, Strayed, in_file, read_metric, read_pslg};
@@ -108,7 +108,7 @@ fn on_surface(args: &RemeshArgs, world: &World, input: Input, mended: &Mended, b
     let options = MeshOptions { fit: !args.no_fit, stiffness: STIFFNESS, ..options(args, Effort::Normal) };
     let meshed = recipe::mesh_surface(&input, &field, None, &options, bar)?;
     let used = as_used(args, &sizing, metric_file.as_deref());
-    let field = meshed.made_for(&field, &input.surface);
+    let field = Finer { field: &field, surface: &input.surface, logs: &meshed.finer };
     let (report, _) = account::on_surface(&meshed, &input, mended, &field, used)?;
     let solution = sizes.solution(&field, meshed.metric_scale, &input.surface, &meshed.mesh.points)?;
     Ok(Made { mesh: meshed.mesh, report, solution })

@@ -52,8 +52,7 @@ use crate::parallel::prelude::*;
 use crate::progress::Progress;
 use crate::quality::{self, SurfaceFidelity};
 use crate::sampling::{Fill, Picking, Plan, Target, demand_memory, refine, refine_protected, simplify};
-use crate::surface::metric::{Finer, SurfaceMetric};
-use crate::surface::{Place, Surface};
+use crate::surface::Place;
 use crate::triangulation::HalfEdge;
 use periodic::correspondence;
 use settle::Stopwatch;
@@ -91,7 +90,7 @@ pub struct Meshed {
     pub protection: Option<figures::Protection>,
     /// How far the mesh of a surface is from it, where [`MeshOptions::hausd`] or [`MeshOptions::fit`] asked for it.
     pub fidelity: Option<SurfaceFidelity>,
-    /// Logarithms of factors on the metric at the vertices of the input's surface, for the sake of the distance to it; empty where all are one.
+    /// What the metric was made finer by for the sake of the distance to the surface: of a [`Finer`](crate::surface::metric::Finer).
     pub finer: Vec<f64>,
     /// The star set that became the mesh, with [`Mesher::StarSet`].
     pub star_set: Option<figures::StarSet>,
@@ -99,13 +98,6 @@ pub struct Meshed {
     pub seconds: Vec<(&'static str, f64)>,
     /// What could not be met, in words for the user; empty when all was.
     pub notes: Vec<String>,
-}
-
-impl Meshed {
-    /// The metric for which the mesh of a surface was made, but for `metric_scale`, by the one that was given.
-    pub fn made_for<'a>(&'a self, field: &'a dyn SurfaceMetric, surface: &'a Surface) -> Finer<'a> {
-        Finer { field, surface, logs: &self.finer }
-    }
 }
 
 /// Seeding starts again with a corrected scale at most so many times.

@@ -78,9 +78,7 @@ pub fn mesh_surface(
     let (mut least, mut idle) = (f64::INFINITY, 0);
     for round in 1.. {
         let finer = Finer { field: metric, surface: &input.surface, logs: &logs };
-        let curves = MeasuredCurves::new(input, &finer);
-        let setting =
-            Setting { input, metric: &finer, aim, options, progress, curves, meetings: &meetings, watch: &watch };
+        let setting = Setting::new(input, &finer, aim, options, &meetings, &watch)?;
         let plan = watch.time("plan", || setting.plan(scale))?;
         let (mut meshed, fidelity) = setting.meshed(plan.count, plan.scale)?;
         let distance = fidelity.as_ref().map_or(0.0, |found| found.both.hausdorff);
@@ -112,13 +110,13 @@ fn too_far(
     found: Option<&SurfaceFidelity>,
 ) -> Result<Vec<f64>> {
     let implicit = input.implicit.as_ref().map(|f| f as &dyn Implicit);
-    let mut ratios = distances_around(mesh, &input.surface, implicit);
+    let mut distances = distances_around(mesh, &input.surface, implicit);
     if let Some(Deviation { at: Position::Space(at), hausdorff, .. }) = found.map(|found| found.both) {
         for v in input.surface.topology().corners(input.closest(at.into())?.face) {
-            ratios[v.index()] = ratios[v.index()].max(hausdorff);
+            distances[v.index()] = distances[v.index()].max(hausdorff);
         }
     }
-    ratios.iter_mut().for_each(|distance| *distance /= allowed);
+    let ratios: Vec<f64> = distances.into_iter().map(|distance| distance / allowed).collect();
     finer.asked(&ratios)
 }
 

@@ -24,10 +24,12 @@ const GROWTH: f64 = 1.3;
 /// A field times factors that are given at the vertices of the surface; inside triangles their logarithms are interpolated.
 #[derive(Clone, Copy)]
 pub struct Finer<'a> {
-    pub(crate) field: &'a dyn SurfaceMetric,
-    pub(crate) surface: &'a Surface,
+    /// The field.
+    pub field: &'a dyn SurfaceMetric,
+    /// The surface that its places are on.
+    pub surface: &'a Surface,
     /// Logarithms of the factors, one per vertex slot; none where all are one.
-    pub(crate) logs: &'a [f64],
+    pub logs: &'a [f64],
 }
 
 impl SurfaceMetric for Finer<'_> {
@@ -68,5 +70,40 @@ impl Finer<'_> {
         let old = |i: usize| self.logs.get(i).copied().unwrap_or(0.0);
         let new = |i: usize| old(i) + 2.0 * (before[i] / sizes[i]).logarithm().max(0.0);
         Ok((0..sizes.len()).map(new).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surface::metric::Constant;
+    use crate::surface::sphere;
+
+    #[test]
+    fn factors_are_around_what_is_too_far_and_add_up() {
+        let surface = sphere(1.0, 0.1).unwrap();
+        let field = Constant(Tensor3::isotropic(0.05));
+        let mut ratios = vec![0.5; surface.positions().len()];
+        ratios[7] = 1.5;
+        let once = Finer { field: &field, surface: &surface, logs: &[] }.asked(&ratios).unwrap();
+        let wanted = (MARGIN * 1.5).raised_to(POWER).logarithm();
+        assert!((once[7] - wanted).abs() < 1e-9, "{} {wanted}", once[7]);
+        let at = surface.position(VertexId(7));
+        let sizes: Vec<f64> = once.iter().map(|log| 0.05 * (-0.5 * log).exponential()).collect();
+        for v in surface.topology().vertices() {
+            // From there sizes grow by the law; what is farther stays.
+            let away = surface.position(v).distance(at);
+            let grown = sizes[7] + away * GROWTH.logarithm();
+            assert!(sizes[v.index()] >= grown.min(0.05) - 1e-6 && sizes[v.index()] <= 0.05 + 1e-12, "{away}");
+            assert!(away < 0.2 || once[v.index()] < 1e-12, "{away} {}", once[v.index()]);
+        }
+        let finer = Finer { field: &field, surface: &surface, logs: &once };
+        let twice = finer.asked(&ratios).unwrap();
+        assert!((twice[7] - 2.0 * wanted).abs() < 1e-9);
+        let place = surface.place_of(VertexId(7)).unwrap();
+        assert!((finer.at(&place).xx / field.at(&place).xx - wanted.exponential()).abs() < 1e-9);
+        // A greater distance at once is not trusted.
+        ratios[7] = 1e3;
+        assert!((finer.asked(&ratios).unwrap()[7] - wanted - MOST.logarithm()).abs() < 1e-9);
     }
 }

@@ -17,6 +17,10 @@ use crate::triangulation::VertexId;
 /// distances come out below mmgs's for the same `hausd` (`scripts/compare_mmgs.py`), which are about 0.65 of what is asked for.
 pub(crate) const SAGITTA: f64 = 2.5;
 
+/// c in h = c hausd / turn, the size for an edge between facets that are wider: one of length h across its middle, with its ends on
+/// both, is h turn / 4 away.
+const KINK: f64 = 4.0;
+
 /// What sizes are to be made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sizing {
@@ -35,7 +39,8 @@ pub struct Sizing {
 
 impl Sizing {
     /// The sizes of a surface: sqrt(`SAGITTA` hausd / c) of the larger principal curvature c, and of that of borders and fixed
-    /// edges; anisotropic, of both along their directions. Given sizes or tensors, one per vertex slot, are kept where they are
+    /// edges, and 4 hausd / t at edges between facets wider than that, whose normals differ by an angle t; anisotropic, of both curvatures along their
+    /// directions alone. Given sizes or tensors, one per vertex slot, are kept where they are
     /// less (of tensors the intersection, then anisotropic). Limits come next, gradation last.
     ///
     /// A surface may be cut along its features: what is said is of each side's own.
@@ -70,7 +75,7 @@ impl Sizing {
     ///
     /// # Errors
     /// [`Error::Parse`](crate::Error::Parse) that names one that does not.
-    pub fn check(&self) -> Result<()> {
+    pub(crate) fn check(&self) -> Result<()> {
         self.limits().check()?;
         let is_distance = self.hausd > 0.0 && self.hausd.is_finite();
         require(is_distance, "sizes", "hausd", self.hausd, "positive and finite: a distance")?;
@@ -93,7 +98,9 @@ impl Sizing {
         let of_surface = curvatures.map(|c| self.of_curvature(c.values[0]));
         let of_curve = bend(surface, VertexId(v as u32)).map(|bend| self.of_curvature(bend.curvature));
         let asked = asked.map(|tensor| 1.0 / tensor.xx.sqrt());
-        let sizes = [of_surface, of_curve, asked].into_iter().flatten();
+        let of_kinks = kinks(surface, VertexId(v as u32)).map(|(turn, width)| (KINK * self.hausd / turn, width));
+        let of_kinks = of_kinks.filter(|(size, width)| size < width).map(|(size, _)| size);
+        let sizes = [of_surface, of_curve, asked].into_iter().flatten().chain(of_kinks);
         sizes.fold(self.h_max, f64::min).max(self.h_min)
     }
 
@@ -114,6 +121,18 @@ impl Sizing {
         let tensor = self.limits().clamp(all);
         plane.extend(tensor, tensor.eigen().large)
     }
+}
+
+/// The angles by which the normal turns over edges at a vertex that are not features, each with the lesser height of the two facets there.
+fn kinks(surface: &Surface, v: VertexId) -> impl Iterator<Item = (f64, f64)> {
+    let t = surface.topology();
+    t.star(v).filter(|&h| !t.is_fixed(h)).filter_map(move |h| {
+        let faces = [h, t.twin(h)?].map(|side| surface.triangle(side.face()));
+        let double = faces.map(|[a, b, c]| (b - a).cross(c - a));
+        let turn = double[0].cross(double[1]).norm().arctangent_over(double[0].dot(double[1]));
+        let [from, to] = t.ends(h).map(|end| surface.position(end));
+        Some((turn, double[0].norm().min(double[1].norm()) / from.distance(to)))
+    })
 }
 
 /// How a curve bends at a vertex.
@@ -181,6 +200,21 @@ mod tests {
             })
         });
         Surface::new(&Mesh { points, triangles: triangles.collect(), ..Mesh::default() }).unwrap()
+    }
+
+    /// Curvatures at vertices know nothing of kinks between facets that are wider than edges.
+    #[test]
+    fn kinks_between_wide_facets_ask_for_sizes_by_their_angle() {
+        let tube = tube(1.0, 2.0, 12, 4);
+        let fine = Sizing { hausd: 1e-3, h_min: 1e-6, ..LOOSE };
+        let widest = (0..tube.positions().len() as u32).flat_map(|v| kinks(&tube, VertexId(v)));
+        let widest = widest.map(|(turn, _)| turn).fold(0.0, f64::max);
+        let sizes = isotropic(&fine, &tube);
+        assert!(sizes.iter().all(|&h| h >= KINK * 1e-3 / widest && h < 0.03), "{widest} {sizes:?}");
+        // Where facets are narrower, curvatures are right.
+        let coarse = isotropic(&Sizing { hausd: 0.1, ..fine }, &tube);
+        assert!(coarse.iter().all(|&h| h > KINK * 0.1 / widest / 4.0), "{coarse:?}");
+        assert!(coarse.iter().all(|&h| h > 0.3), "{coarse:?}");
     }
 
     /// The sizes that a tensor asks for along two unit tangents.
