@@ -161,7 +161,8 @@ def mesh(
         Surfaces: vertices where mesh and surface are closest in the sense of least squares, instead of on the surface
     ar : float (degrees), default 45
         Edges of a surface where its normal turns by more than this angle are creases: they are kept, as borders, listed
-        edges and edges between labels are, and with them the corners where such curves turn by as much
+        edges and edges between labels are, and with them the corners where such curves turn by as much. Metrics know
+        nothing of what is beyond
     nr : bool, default False
         Look for no creases and corners by angles
     mesher : str, default 'voronoi'
@@ -505,6 +506,8 @@ def check(
     smooth_metric: int = 0,
     tensor_order: str = 'disk',
     background: File | None = None,
+    ar: float = 45,
+    nr: bool = False,
     picture: File | None = None,
     show: str = 'mesh',
     pixels: int = 1600,
@@ -555,6 +558,12 @@ def check(
         (m11 m12 m13 m22 m23 m33) or diagonal (m11 m22 m33 m12 m23 m13)
     background : File, optional
         The mesh on which a .sol metric is given [default: the domain's own]
+    ar : float (degrees), default 45
+        Edges of a surface where its normal turns by more than this angle are creases: they are kept, as borders, listed
+        edges and edges between labels are, and with them the corners where such curves turn by as much. Metrics know
+        nothing of what is beyond
+    nr : bool, default False
+        Look for no creases and corners by angles
     picture : File, optional
         Draw a picture: .svg or .png
     show : str, default 'mesh'
@@ -591,8 +600,8 @@ def check(
     >>> voronaut.check(layer)["valid"]
     True
     """
-    options = {"metric_scale": metric_scale, "function": function, "h_min": h_min, "h_max": h_max, "norm": norm, "recovery": recovery, "a_max": a_max, "gradation": gradation, "smooth_metric": smooth_metric, "tensor_order": tensor_order, "background": background, "picture": picture, "show": show, "pixels": pixels, "window": window, "histograms": histograms, "repair": repair, "threads": threads, "time_limit": time_limit, "memory_limit": memory_limit}
-    defaults: dict[str, Any] = {"norm": 2, "recovery": 'fit', "smooth_metric": 0, "tensor_order": 'disk', "show": 'mesh', "pixels": 1600, "memory_limit": 16}
+    options = {"metric_scale": metric_scale, "function": function, "h_min": h_min, "h_max": h_max, "norm": norm, "recovery": recovery, "a_max": a_max, "gradation": gradation, "smooth_metric": smooth_metric, "tensor_order": tensor_order, "background": background, "ar": ar, "nr": nr, "picture": picture, "show": show, "pixels": pixels, "window": window, "histograms": histograms, "repair": repair, "threads": threads, "time_limit": time_limit, "memory_limit": memory_limit}
+    defaults: dict[str, Any] = {"norm": 2, "recovery": 'fit', "smooth_metric": 0, "tensor_order": 'disk', "ar": 45, "show": 'mesh', "pixels": 1600, "memory_limit": 16}
     return _run.check(mesh, metric, domain, options, defaults, progress)
 
 
@@ -760,6 +769,8 @@ def view(
     smooth_metric: int = 0,
     tensor_order: str = 'disk',
     background: File | None = None,
+    ar: float = 45,
+    nr: bool = False,
     repair: bool = False,
     threads: int | None = None,
     time_limit: float | None = None,
@@ -808,6 +819,12 @@ def view(
         (m11 m12 m13 m22 m23 m33) or diagonal (m11 m22 m33 m12 m23 m13)
     background : File, optional
         The mesh on which a .sol metric is given [default: the domain's own]
+    ar : float (degrees), default 45
+        Edges of a surface where its normal turns by more than this angle are creases: they are kept, as borders, listed
+        edges and edges between labels are, and with them the corners where such curves turn by as much. Metrics know
+        nothing of what is beyond
+    nr : bool, default False
+        Look for no creases and corners by angles
     repair : bool, default False
         Mend what is else refused with its place. Surfaces: T-junctions, edges of three triangles, sheets that meet in a
         point; and small holes are closed. (Duplicates and triangles without area go, and seams are welded, anyway.)
@@ -833,6 +850,6 @@ def view(
     --------
     >>> voronaut.view(layer, cells=True, metric="swirl").save("layer.html")
     """
-    options = {"metric_scale": metric_scale, "domain": domain, "cells": cells, "canvas_size": canvas_size, "title": title, "h_min": h_min, "h_max": h_max, "norm": norm, "recovery": recovery, "a_max": a_max, "gradation": gradation, "smooth_metric": smooth_metric, "tensor_order": tensor_order, "background": background, "repair": repair, "threads": threads, "time_limit": time_limit, "memory_limit": memory_limit}
-    defaults: dict[str, Any] = {"canvas_size": 60, "norm": 2, "recovery": 'fit', "smooth_metric": 0, "tensor_order": 'disk', "memory_limit": 16}
+    options = {"metric_scale": metric_scale, "domain": domain, "cells": cells, "canvas_size": canvas_size, "title": title, "h_min": h_min, "h_max": h_max, "norm": norm, "recovery": recovery, "a_max": a_max, "gradation": gradation, "smooth_metric": smooth_metric, "tensor_order": tensor_order, "background": background, "ar": ar, "nr": nr, "repair": repair, "threads": threads, "time_limit": time_limit, "memory_limit": memory_limit}
+    defaults: dict[str, Any] = {"canvas_size": 60, "norm": 2, "recovery": 'fit', "smooth_metric": 0, "tensor_order": 'disk', "ar": 45, "memory_limit": 16}
     return _run.view(meshes, metric, options, defaults, progress)
