@@ -48,7 +48,7 @@ impl Norm {
         }
         let determinant = bounding.determinant();
         if degree == 1 && self.is_square() {
-            // Roots take a third of the time of a power.
+            // Roots cost less than a power.
             return 1.0 / determinant.sqrt().cube_root();
         }
         determinant.raised_to(-1.0 / ((degree as f64 + 1.0) * self.0 + 2.0))

@@ -149,7 +149,7 @@ impl Program {
     /// What it makes of its variables: its results.
     pub(super) fn run<N: Number, const RESULTS: usize>(&self, variables: [N; 4]) -> [N; RESULTS] {
         // What is not there need not be set to zero. Values that are kept are at the stack's end, and there in any stack that is a part of the
-        // whole. Eight jets take as long to clear as one takes to compute.
+        // whole.
         match self.height {
             0..=8 => run_on::<N, RESULTS, 8>(&self.code, variables),
             9..=16 => run_on::<N, RESULTS, 16>(&self.code, variables),

@@ -85,7 +85,7 @@ impl Objective {
     fn power_of(&self, error: Jet) -> Jet {
         let (p, value) = (self.norm.exponent(), self.norm.power(error.value));
         if error.value == 0.0 {
-            // Of a square alone there is a second derivative to keep; below its is infinite.
+            // Of a square there is a second derivative to keep; of lesser powers it is infinite, of greater ones zero.
             return error.chain(0.0, [0.0, if self.norm.is_square() { 2.0 } else { 0.0 }]);
         }
         let first = p * value / error.value;

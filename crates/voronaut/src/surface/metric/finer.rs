@@ -12,7 +12,7 @@ use crate::triangulation::VertexId;
 /// as sizes: this is between.
 const POWER: f64 = 1.5;
 /// Distances are to come out so much lower than they have to, and where they are not they are taken for too great: the mesh will be another one, and
-/// edges may cross kinks elsewhere. With 1.1 spot within 1.5e-3 of the diagonal needs more rounds than there are.
+/// edges may cross kinks elsewhere. With 1.1 other places are too far round after round.
 const MARGIN: f64 = 1.4;
 /// The greatest factor at a time.
 const MOST: f64 = 4.0;
