@@ -22,7 +22,7 @@ pub use point::{Aabb, Aabb3, Point, Point3, Vector, Vector3};
 pub(crate) use point::{Readable, kept_within};
 pub use predicates::{Orientation, orientation, signed_area};
 pub(crate) use predicates::{centroid, holds, in_circle, segment_intersection, signed_volume};
-pub(crate) use quadrature::{Node, combine, radon};
+pub(crate) use quadrature::{Node, combine, radon, radon_on_parts};
 pub use tensor::{Eigen, Tensor};
 pub(crate) use tensor::{from_frame, to_frame};
 pub(crate) use tensor3::{Eigen3, Seen};

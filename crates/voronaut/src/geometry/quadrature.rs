@@ -1,4 +1,4 @@
-//! A quadrature rule for triangles.
+//! Quadrature rules for triangles.
 
 use super::Point;
 
@@ -18,6 +18,28 @@ pub(crate) fn radon() -> [Node; 7] {
             let mut at = [near; 3];
             at[corner] = far;
             nodes[1 + 3 * i + corner] = (at, weight);
+        }
+    }
+    nodes
+}
+
+/// The same on each of so many times so many parts of a triangle.
+pub(crate) fn radon_on_parts(parts: u32) -> Vec<Node> {
+    let mut nodes = Vec::new();
+    let side = f64::from(parts);
+    let corner = |i: u32, j: u32| [f64::from(parts - i - j) / side, f64::from(i) / side, f64::from(j) / side];
+    let mut add = |part: [[f64; 3]; 3]| {
+        for ([u, v, w], weight) in radon() {
+            let at = std::array::from_fn(|k| u * part[0][k] + v * part[1][k] + w * part[2][k]);
+            nodes.push((at, weight / (side * side)));
+        }
+    };
+    for i in 0..parts {
+        for j in 0..parts - i {
+            add([corner(i, j), corner(i + 1, j), corner(i, j + 1)]);
+            if i + j + 2 <= parts {
+                add([corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)]);
+            }
         }
     }
     nodes

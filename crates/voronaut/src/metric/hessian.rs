@@ -3,9 +3,9 @@
 use super::complexity::{PIECES, start};
 use super::form::Form;
 use super::nodal::{absolute, size};
-use super::{MetricField, Norm, Recovery, Sampled, ScalarField, Snapshot, recover_hessian};
+use super::{MetricField, Near, Norm, Optimal, Recovery, Sampled, ScalarField, Snapshot, recover_hessian};
 use crate::error::{Error, Result};
-use crate::geometry::{Point, Tensor, centroid};
+use crate::geometry::{Jet, Point, Tensor, Vector, centroid};
 use crate::mesh::{Located, Locator, Mesh};
 
 /// The metric in which a unit mesh has the least L^p error of interpolating a function by polynomials of degree 1 (Loseille and Alauzet 2011: its Hessian's
@@ -15,6 +15,7 @@ use crate::mesh::{Located, Locator, Mesh};
 pub struct Hessian {
     function: Snapshot,
     norm: Norm,
+    optimal: Optimal,
     floor: f64,
     degree: usize,
 }
@@ -26,7 +27,7 @@ impl Hessian {
     /// [`Error::Metric`] where a derivative is not finite, or where all are zero; [`Error::Domain`] of triangles that are
     /// not finite.
     pub(crate) fn new(function: Snapshot, norm: Norm, degree: usize, domain: &[[Point; 3]]) -> Result<Self> {
-        let mut found = Self { function, norm, floor: 0.0, degree };
+        let mut found = Self { function, norm, optimal: Optimal::new(norm), floor: 0.0, degree };
         let (mut sum, mut total) = (0.0, 0.0);
         for (triangle, _) in start(domain, PIECES)? {
             let ([a, b, c], middle) = (triangle, centroid(triangle));
@@ -73,7 +74,8 @@ impl Hessian {
 impl MetricField for Hessian {
     fn at(&self, p: Point) -> Tensor {
         if self.degree == 1 {
-            return self.norm.weighted(absolute(self.function.second_derivatives(p), self.floor));
+            let hessian = self.function.second_derivatives(p);
+            return self.optimal.of(hessian, absolute(hessian, self.floor));
         }
         let bounding = self.form(p).bounding(self.floor);
         bounding * self.norm.weight(bounding, self.degree)
@@ -117,7 +119,8 @@ impl Recovered {
         let floor = FLOOR * size;
         let area = 0.5 * self.mesh.triangles.iter().map(|&triangle| self.mesh.double_area(triangle)).sum::<f64>();
         if size > rounding(&self.values, area) && floor > 0.0 {
-            let tensors: Vec<Tensor> = self.hessians.iter().map(|&h| norm.weighted(absolute(h, floor))).collect();
+            let optimal = Optimal::new(norm);
+            let tensors: Vec<Tensor> = self.hessians.iter().map(|&h| optimal.of(h, absolute(h, floor))).collect();
             return Sampled::new(&self.mesh, &tensors);
         }
         let help = "its interpolation is exact on any mesh: use another metric, such as uniform";
@@ -142,20 +145,54 @@ pub(crate) fn rounding(values: &[f64], area: f64) -> f64 {
     100.0 * f64::EPSILON * greatest * values.len() as f64 / area
 }
 
-impl ScalarField for Recovered {
-    fn value(&self, p: Point) -> f64 {
-        let Some(Located { triangle, weights, .. }) = self.locator.locate(p) else { return f64::NAN };
+impl Recovered {
+    /// The triangle that the nearest point of the mesh is in, and its barycentric coordinates there.
+    fn place(&self, p: Point, near: &mut Near) -> Option<(u32, [f64; 3])> {
+        let Located { triangle, weights, .. } = self.locator.locate_from(near.place, p)?;
+        near.place = Some(triangle);
+        Some((triangle, weights))
+    }
+
+    /// In a triangle the function is the sum of values times weights, less that of bends times the products of an edge's two weights.
+    fn coefficients(&self, triangle: u32) -> [(f64, f64); 3] {
         let vertices = self.mesh.triangles[triangle as usize];
-        let linear: f64 = vertices.iter().zip(weights).map(|(&v, weight)| weight * self.values[v as usize]).sum();
-        let bend = |i: usize| {
-            let j = (i + 1) % 3;
-            let (u, v) = (vertices[i], vertices[j]);
+        std::array::from_fn(|i| {
+            let [u, v] = [vertices[i], vertices[(i + 1) % 3]];
             let edge = self.mesh.point(v) - self.mesh.point(u);
             let sum = self.hessians[u as usize] + self.hessians[v as usize];
             // 4 of the shape function in the middle times e' (sum / 2) e / 8.
-            0.25 * weights[i] * weights[j] * sum.dot(edge, edge)
-        };
-        linear - (0..3).map(bend).sum::<f64>()
+            (self.values[u as usize], 0.25 * sum.dot(edge, edge))
+        })
+    }
+}
+
+impl ScalarField for Recovered {
+    fn value(&self, p: Point) -> f64 {
+        self.value_near(p, &mut Near::default())
+    }
+
+    fn jet(&self, p: Point) -> Option<Jet> {
+        self.jet_near(p, &mut Near::default())
+    }
+
+    fn value_near(&self, p: Point, near: &mut Near) -> f64 {
+        let Some((triangle, weights)) = self.place(p, near) else { return f64::NAN };
+        let of = |(i, (value, bend)): (usize, &(f64, f64))| weights[i] * (value - bend * weights[(i + 1) % 3]);
+        self.coefficients(triangle).iter().enumerate().map(of).sum()
+    }
+
+    fn jet_near(&self, p: Point, near: &mut Near) -> Option<Jet> {
+        let (triangle, weights) = self.place(p, near)?;
+        let corners = self.locator.corners(triangle);
+        let inverse = 1.0 / (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+        let weights: [Jet; 3] = std::array::from_fn(|i| {
+            let across = corners[(i + 2) % 3] - corners[(i + 1) % 3];
+            Jet { value: weights[i], gradient: Vector::new(-across.y, across.x) * inverse, hessian: Tensor::default() }
+        });
+        let of =
+            |(i, (value, bend)): (usize, &(f64, f64))| weights[i] * (Jet::from(*value) - weights[(i + 1) % 3] * *bend);
+        let sum = self.coefficients(triangle).iter().enumerate().map(of).fold(Jet::default(), |sum, part| sum + part);
+        inverse.is_finite().then_some(sum)
     }
 }
 
@@ -182,13 +219,13 @@ mod tests {
     }
 
     #[test]
-    fn of_quadratics_it_is_constant_and_has_no_sign() {
+    fn of_quadratics_it_is_constant_and_half_as_dense_at_saddles() {
         // Second derivatives 8, -2 along and across (0.6, 0.8).
         let text = "4*(0.6*x + 0.8*y)^2 - (0.8*x - 0.6*y)^2";
         let truth = Tensor::from_axis(crate::geometry::Vector::new(0.6, 0.8), 8.0, 2.0);
         for p in [Point::new(0.1, 0.9), Point::new(0.5, 0.5)] {
             assert_close(hessian(text, Norm::new(f64::INFINITY).unwrap()).unwrap().at(p), truth);
-            assert_close(hessian(text, Norm::default()).unwrap().at(p), truth * 16.0_f64.powf(-1.0 / 6.0));
+            assert_close(hessian(text, Norm::default()).unwrap().at(p), truth * (0.5 * 16.0_f64.powf(-1.0 / 6.0)));
         }
     }
 
@@ -240,6 +277,11 @@ mod tests {
         for i in 0..200 {
             let p = Point::new((f64::from(i) * 0.618).fract(), (f64::from(i) * 0.414).fract());
             assert!((found.value(p) - f(p)).abs() < 1e-9, "{p}");
+            let jet = found.jet(p).unwrap();
+            assert_eq!(jet.value, found.value(p));
+            let slope = jet.gradient - crate::geometry::Vector::new(6.0 * p.x - p.y + 1.0, p.y - p.x);
+            let bend = jet.hessian + Tensor::new(6.0, -1.0, 1.0) * -1.0;
+            assert!(slope.norm() < 1e-6 && size(bend) < 1e-5, "{p}: {jet:?}");
         }
         // Second derivatives ((6, -1), (-1, 1)), positive definite.
         let m = found.metric(Norm::new(f64::INFINITY).unwrap()).unwrap().at(Point::new(0.4, 0.7));

@@ -31,6 +31,7 @@ mod hessian;
 mod neighbours;
 pub mod nodal;
 mod norm;
+mod optimal;
 mod parser;
 mod program;
 mod recovery;
@@ -54,6 +55,7 @@ pub use hessian::Hessian;
 pub(crate) use hessian::{FLOOR, Recovered, rounding};
 pub(crate) use neighbours::Neighbours;
 pub use norm::Norm;
+pub(crate) use optimal::Optimal;
 pub use recovery::{Recovery, recover_hessian};
 pub(crate) use recovery::{hessian_around, least_squares};
 pub use sampled::Sampled;
@@ -99,7 +101,7 @@ pub trait MetricField: Sync {
     }
 }
 
-/// Where a field found what it was last asked for; at first nowhere.
+/// Where a field or a function found what it was last asked for; at first nowhere.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Near {
     pub(crate) place: Option<u32>,
@@ -151,6 +153,16 @@ pub trait ScalarField: Sync {
     /// The value, and first and second derivatives by x and y; `None` where these are not known in closed form.
     fn jet(&self, _p: Point) -> Option<Jet> {
         None
+    }
+
+    /// [`value`](Self::value), but for rounding, where the point is near that of the last call with this `near`.
+    fn value_near(&self, p: Point, _near: &mut Near) -> f64 {
+        self.value(p)
+    }
+
+    /// [`jet`](Self::jet), in the same way.
+    fn jet_near(&self, p: Point, _near: &mut Near) -> Option<Jet> {
+        self.jet(p)
     }
 }
 

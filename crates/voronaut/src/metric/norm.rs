@@ -33,14 +33,6 @@ impl Norm {
         self.0
     }
 
-    /// det(|H|)^(-1 / (2p + 2)) |H|, of the absolute value of a Hessian: up to a factor that is the same everywhere, the metric
-    /// whose unit meshes have, of all with as many vertices, the least L^p error of linear interpolation (Loseille and
-    /// Alauzet 2011, in two dimensions). With p infinite, |H| itself.
-    #[must_use]
-    pub(crate) fn weighted(self, absolute: Tensor) -> Tensor {
-        absolute * self.weight(absolute, 1)
-    }
-
     /// det(Q)^(-1 / ((k + 1) p + 2)), for polynomials of degree k, whose error over a unit of Q is the same everywhere.
     pub(crate) fn weight(self, bounding: Tensor, degree: usize) -> f64 {
         if self.0.is_infinite() {
@@ -89,16 +81,6 @@ impl FromStr for Norm {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn weights_take_the_size_of_a_hessian_away_but_not_all_of_it() {
-        // sqrt(det) of the weighted tensor is det^(p / (2p + 2)).
-        let h = Tensor::new(40.0, 3.0, 2.0);
-        for (p, power) in [(1.0, 0.25), (2.0, 1.0 / 3.0), (4.0, 0.4), (f64::INFINITY, 0.5)] {
-            let density = Norm::new(p).unwrap().weighted(h).determinant().sqrt();
-            assert!((density / h.determinant().powf(power) - 1.0).abs() < 1e-12, "{p}");
-        }
-    }
 
     #[test]
     fn texts() {

@@ -4,11 +4,12 @@ use super::{Position, Spot};
 use crate::curved::{AREA, MOST, Place, bernstein, bezier_points, blend, exponents, points_of_nodes};
 use crate::elementary::Elementary;
 use crate::error::{Error, Result};
-use crate::geometry::{Node, Point, Point3, radon};
+use crate::geometry::{Node, Point, Point3, radon_on_parts};
 use crate::mesh::Mesh;
-use crate::metric::{Expression, Norm, ScalarField};
+use crate::metric::{Expression, Near, Norm, ScalarField};
 use crate::parallel::prelude::*;
 use crate::surface::{self, Input};
+use std::cell::Cell;
 use std::fmt;
 
 /// Each triangle is cut into so many times so many parts, with a rule of degree 5 on each.
@@ -53,9 +54,16 @@ impl fmt::Display for Exponent {
 pub fn interpolation_error(mesh: &Mesh, function: &dyn ScalarField, norm: Norm) -> Result<InterpolationError> {
     let value = |p: Point3| function.value(Point::new(p.x, p.y));
     if mesh.curved.is_none() {
-        return error_of(mesh, &value, |_| (), |(), p| value(p), norm);
+        let within = |found: &Cell<Near>, p: Point3| {
+            let mut near = found.get();
+            let value = function.value_near(Point::new(p.x, p.y), &mut near);
+            found.set(near);
+            value
+        };
+        return error_of(mesh, &value, |_| Cell::default(), within, norm);
     }
-    let places: Vec<Place> = nodes().into_iter().map(|(at, weight)| Place::of(mesh, at, weight)).collect();
+    let places: Vec<Place> =
+        radon_on_parts(PARTS).into_iter().map(|(at, weight)| Place::of(mesh, at, weight)).collect();
     let of = |t: usize| on_curved(mesh, t, function, norm, &places);
     summed(&(0..mesh.triangles.len()).into_par_iter().with_min_len(64).map(of).collect::<Vec<_>>(), true, norm)
 }
@@ -89,7 +97,7 @@ fn error_of<K>(
     norm: Norm,
 ) -> Result<InterpolationError> {
     let values: Vec<f64> = (0..mesh.points.len() as u32).into_par_iter().map(|v| at_vertex(mesh.position(v))).collect();
-    let nodes = nodes();
+    let nodes = radon_on_parts(PARTS);
     let of = |&t: &[u32; 3]| {
         let corners = mesh.positions_of(t);
         let known = known(corners);
@@ -117,28 +125,6 @@ fn summed(found: &[(f64, f64, Point3)], is_planar: bool, norm: Norm) -> Result<I
     let sum: f64 = found.iter().map(|&(sum, own, _)| if own > 0.0 { sum * norm.power(own / max) } else { 0.0 }).sum();
     let value = if max > 0.0 { max * sum.raised_to(1.0 / p) } else { 0.0 };
     Ok(InterpolationError { norm: value, p: Exponent::Finite(p), max: max_spot })
-}
-
-/// Barycentric coordinates and weights on the parts of a triangle.
-fn nodes() -> Vec<Node> {
-    let mut nodes = Vec::new();
-    let side = f64::from(PARTS);
-    let corner = |i: u32, j: u32| [f64::from(PARTS - i - j) / side, f64::from(i) / side, f64::from(j) / side];
-    let mut add = |part: [[f64; 3]; 3]| {
-        for ([u, v, w], weight) in radon() {
-            let at = std::array::from_fn(|k| u * part[0][k] + v * part[1][k] + w * part[2][k]);
-            nodes.push((at, weight / (side * side)));
-        }
-    };
-    for i in 0..PARTS {
-        for j in 0..PARTS - i {
-            add([corner(i, j), corner(i + 1, j), corner(i, j + 1)]);
-            if i + j + 2 <= PARTS {
-                add([corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)]);
-            }
-        }
-    }
-    nodes
 }
 
 /// The integral of the p-th power of the error as a share of the greatest; the greatest, and where it is.

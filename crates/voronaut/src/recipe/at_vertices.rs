@@ -50,7 +50,12 @@ fn at(source: SurfaceSource, input: &Input, vertices: &TangentPlanes) -> Result<
             // A vertex with neighbours that know nothing either asks for nothing: less than any that does.
             let least = known.iter().flatten().map(|m| m.eigen().values[2]).fold(f64::INFINITY, f64::min);
             let nothing = Tensor3::IDENTITY * if least.is_finite() { least } else { 1.0 };
-            Ok(Source::Hessian(vertices.seen(&filled(surface, &known, nothing))))
+            let filled = filled(surface, &known, nothing);
+            let signed = |(found, filled): (&Option<(TangentPlane, Tensor)>, Tensor3)| {
+                found.as_ref().map_or(filled, |(plane, hessian)| plane.extend(*hessian, 0.0))
+            };
+            let hessians: Vec<Tensor3> = recovered.iter().zip(filled).map(signed).collect();
+            Ok(Source::Hessian(vertices.seen(&hessians)))
         }
         SurfaceSource::Named(Spec::Hessian(function)) => {
             let field = CovariantHessian::new(function, input, Norm::default())?;
@@ -203,7 +208,7 @@ mod tests {
         let mesh = welded_cube(6);
         let surface = Surface::new(&mesh).unwrap();
         let given = sizes(vec![0.2; mesh.points.len()]);
-        let pipeline = Pipeline { gradation_factor: Some(1.3), ..Pipeline::default() };
+        let pipeline = Pipeline { gradation_factor: None, ..Pipeline::default() };
         let (made, solution) =
             metric_at_vertices(&pipeline, surface.clone(), vec![SurfaceSource::Values(&given)]).unwrap();
         assert!(tensors(&solution).iter().all(|m| (m.xx - 25.0).abs() + m.xy.abs() + (m.zz - 25.0).abs() < 1e-9));

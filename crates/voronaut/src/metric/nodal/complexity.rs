@@ -4,7 +4,7 @@ use super::{Vertices, enforce_spd};
 use crate::elementary::Elementary;
 use crate::error::{Error, Result};
 use crate::geometry::Tensor;
-use crate::metric::Norm;
+use crate::metric::{Norm, Optimal};
 
 /// The integral of sqrt(det M) over a mesh, of the metric that is log-Euclidean between the vertices: exact but for
 /// rounding, for there log sqrt(det M) is linear on every triangle. Triangles of either orientation count.
@@ -18,10 +18,10 @@ pub(in crate::metric) fn of_triangle(double_area: f64, logs: [f64; 3]) -> f64 {
     double_area * divided_difference(logs)
 }
 
-/// The metric that is optimal for linear interpolation in an L^p norm (Loseille and Alauzet 2011), of given Hessians and up to a
-/// factor: det(|H|)^(-1 / (2p + 2)) |H|, `enforce_spd` being |H|.
+/// The metric that is [`Optimal`] for linear interpolation in an L^p norm, of given Hessians and up to a factor, `enforce_spd` being |H|.
 pub(super) fn weighted(hessians: &[Tensor], norm: Norm) -> Result<Vec<Tensor>> {
-    Ok(enforce_spd(hessians)?.into_iter().map(|h| norm.weighted(h)).collect())
+    let optimal = Optimal::new(norm);
+    Ok(enforce_spd(hessians)?.into_iter().zip(hessians).map(|(absolute, &h)| optimal.of(h, absolute)).collect())
 }
 
 /// A metric times the factor that gives it a complexity.

@@ -114,8 +114,10 @@ impl Pipeline {
         let stage = Stage { mesh, combined: &combined, limits: &self.limits, gradation };
         let Some(target) = self.target_complexity else { return stage.outcome(1.0, stage.at(1.0)?) };
         // Gradation is dear, and its result may be lifted.
-        let aim = if stage.gradation.is_some() { LIFT } else { AIM };
-        let goal = target * (-aim).exponential();
+        let (aim, goal) = match stage.gradation {
+            Some(_) => (LIFT, target * (-LIFT).exponential()),
+            None => (AIM, target),
+        };
         match root(aim, |x| Ok((complexity(mesh, &stage.at(x.exponential())?) / goal).logarithm()))? {
             Root::At(x) | Root::Jump(x) => stage.lifted(x.exponential(), target),
             Root::Below(excess) => Err(out_of_reach(target, "at most", goal * excess.exponential())),

@@ -13,7 +13,7 @@ use super::Patience;
 use crate::dual::{Dual, Kind, SurfaceDual};
 use crate::error::{Error, Result};
 use crate::geometry::{Jet, Vector};
-use crate::metric::{Expression, Norm, ScalarField};
+use crate::metric::{Expression, Near, Norm, ScalarField};
 use crate::parallel::prelude::*;
 use crate::progress::Progress;
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
@@ -106,9 +106,9 @@ trait Sheet: Sync {
     /// The function at a vertex.
     fn value(&self, at: Self::At) -> f64;
     /// The function in a triangle, at barycentric coordinates.
-    fn value_within(&self, corners: [Self::At; 3], weights: [f64; 3]) -> f64;
+    fn value_within(&self, corners: [Self::At; 3], weights: [f64; 3], near: &mut Near) -> f64;
     /// The function in a triangle, and its derivatives in the directions of a frame; `None` where these are not known.
-    fn jet_within(&self, _corners: [Self::At; 3], _weights: [f64; 3], _frame: &Frame) -> Option<Jet> {
+    fn jet_within(&self, _: [Self::At; 3], _: [f64; 3], _: &Frame, _: &mut Near) -> Option<Jet> {
         None
     }
     /// Quality, in the mean tensor of three vertices, of a triangle with these corners: 1 of an equilateral one.

@@ -5,6 +5,7 @@ use super::{Sheet, Work, is_allowed};
 use crate::dual::Kind;
 use crate::elementary::Elementary;
 use crate::geometry::{Jet, Point, Tensor, Vector};
+use crate::metric::Near;
 use crate::parallel::prelude::*;
 use crate::triangulation::{HalfEdge, Rounds, Triangulation, VertexId, flip_in_rounds};
 
@@ -88,7 +89,7 @@ impl<S: Sheet> Work<S> {
     /// The error around a vertex, by derivatives of the function in a frame, where these are known.
     fn expansion(&self, v: VertexId, ring: &[[VertexId; 2]], frame: &Frame) -> Option<Jet> {
         let here = self.place(v);
-        let known = self.sheet.jet_within([here.at; 3], [1.0, 0.0, 0.0], frame)?;
+        let known = self.sheet.jet_within([here.at; 3], [1.0, 0.0, 0.0], frame, &mut Near::default())?;
         let moved = [[1.0, 0.0], [0.0, 1.0]].map(|step| self.sheet.stepped(v, frame, step));
         ring.iter().try_fold(Jet::default(), |sum, &[a, b]| {
             let corners = [here, self.place(a), self.place(b)];

@@ -4,7 +4,7 @@ use super::Sheet;
 use super::moves::Frame;
 use crate::elementary::Elementary;
 use crate::geometry::{Jet, Node, Vector, radon};
-use crate::metric::Norm;
+use crate::metric::{Near, Norm};
 
 /// A vertex, as errors see it.
 #[derive(Clone, Copy, Debug)]
@@ -46,9 +46,10 @@ impl Objective {
         if area <= 0.0 {
             return f64::INFINITY;
         }
+        let mut near = Near::default();
         let share = |&([u, v, w], weight): &Node| {
-            let error =
-                (sheet.value_within(places, [u, v, w]) - (u * a.value + v * b.value + w * c.value)) * (1.0 / self.unit);
+            let error = (sheet.value_within(places, [u, v, w], &mut near) - (u * a.value + v * b.value + w * c.value))
+                * (1.0 / self.unit);
             weight * self.norm.power(error)
         };
         area * self.nodes.iter().map(share).sum::<f64>()
@@ -70,9 +71,9 @@ impl Objective {
         let area = sheet.area(places);
         let grown = |to: Option<S::At>| to.map_or(0.0, |at| sheet.area([at, places[1], places[2]]) - area);
         let [by_first, by_second] = moved.map(grown);
-        let mut sum = Jet::default();
+        let (mut sum, mut near) = (Jet::default(), Near::default());
         for &([u, v, w], weight) in &self.nodes {
-            let there = sheet.jet_within(places, [u, v, w], frame)?;
+            let there = sheet.jet_within(places, [u, v, w], frame, &mut near)?;
             let between = known * u;
             let value = there.value - (u * a.value + v * b.value + w * c.value);
             let error = Jet { value, ..there.slowed(u) - between } * (1.0 / self.unit);

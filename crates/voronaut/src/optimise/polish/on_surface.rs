@@ -4,7 +4,7 @@ use super::Sheet;
 use super::moves::Frame;
 use crate::dual::{Kind, Moving, SurfaceDual};
 use crate::geometry::{Point3, Seen, Vector, Vector3};
-use crate::metric::Expression;
+use crate::metric::{Expression, Near};
 use crate::surface::Place;
 use crate::triangulation::{HalfEdge, Triangulation, VertexId};
 
@@ -89,7 +89,7 @@ impl Sheet for OnSurface<'_, '_> {
 
     /// Where the surface is over the triangle, to second order: over an edge e between normals m and n it is (n - m) . e / 8 away from
     /// the middle. To walk there takes many times as long, and differs by the third order.
-    fn value_within(&self, corners: [Spot; 3], weights: [f64; 3]) -> f64 {
+    fn value_within(&self, corners: [Spot; 3], weights: [f64; 3], _: &mut Near) -> f64 {
         let flat = Point3::weighted(corners.map(|corner| corner.position), weights);
         let over = |i: usize, j: usize| {
             let (from, to) = (corners[i], corners[j]);

@@ -4,7 +4,7 @@ use super::Sheet;
 use super::moves::Frame;
 use crate::dual::{Dual, Kind, Moving};
 use crate::geometry::{Jet, Point, Vector, combine, signed_area};
-use crate::metric::ScalarField;
+use crate::metric::{Near, ScalarField};
 use crate::planar::Planar;
 use crate::triangulation::{HalfEdge, Triangulation, VertexId};
 
@@ -66,12 +66,12 @@ impl Sheet for Flat<'_> {
         self.function.value(at)
     }
 
-    fn value_within(&self, corners: [Point; 3], weights: [f64; 3]) -> f64 {
-        self.function.value(combine(weights, corners))
+    fn value_within(&self, corners: [Point; 3], weights: [f64; 3], near: &mut Near) -> f64 {
+        self.function.value_near(combine(weights, corners), near)
     }
 
-    fn jet_within(&self, corners: [Point; 3], weights: [f64; 3], frame: &Frame) -> Option<Jet> {
-        Some(self.function.jet(combine(weights, corners))?.along(frame.axes()))
+    fn jet_within(&self, corners: [Point; 3], weights: [f64; 3], frame: &Frame, near: &mut Near) -> Option<Jet> {
+        Some(self.function.jet_near(combine(weights, corners), near)?.along(frame.axes()))
     }
 
     fn shape(&self, vertices: [VertexId; 3], corners: [Point; 3]) -> f64 {

@@ -4,7 +4,7 @@ use super::{Sampled, SurfaceMetric, fit_curvatures};
 use crate::error::{Error, Result};
 use crate::geometry::{Point3, TangentPlane, Tensor, Tensor3, Vector3};
 use crate::metric::nodal::{absolute, size};
-use crate::metric::{Expression, FLOOR, Neighbours, Norm, hessian_around, rounding};
+use crate::metric::{Expression, FLOOR, Neighbours, Norm, Optimal, hessian_around, rounding};
 use crate::parallel::prelude::*;
 use crate::surface::{Curvatures, Implicit, Input, Place, Surface};
 use crate::triangulation::{FaceId, VertexId};
@@ -19,7 +19,7 @@ use crate::triangulation::{FaceId, VertexId};
 pub(crate) struct CovariantHessian {
     function: Expression,
     bend: Bend,
-    norm: Norm,
+    optimal: Optimal,
     floor: f64,
 }
 
@@ -43,7 +43,7 @@ impl CovariantHessian {
             Some(f) => Bend::Equation(f.clone()),
             None => Bend::fitted(&input.surface),
         };
-        let mut made = Self { function: function.clone(), bend, norm, floor: 0.0 };
+        let mut made = Self { function: function.clone(), bend, optimal: Optimal::new(norm), floor: 0.0 };
         let mean = mean_over(&input.surface, |place| {
             let greatest = size(made.second_derivatives(place).1);
             if greatest.is_finite() { Ok(greatest) } else { Err(not_finite(place)) }
@@ -64,13 +64,13 @@ impl CovariantHessian {
 impl SurfaceMetric for CovariantHessian {
     fn at(&self, place: &Place) -> Tensor3 {
         let (plane, hessian) = self.second_derivatives(place);
-        optimal(&plane, hessian, self.norm, self.floor)
+        tangent(&plane, hessian, &self.optimal, self.floor)
     }
 }
 
 /// The metric of second derivatives in a tangent plane, with the larger eigenvalue across it.
-fn optimal(plane: &TangentPlane, hessian: Tensor, norm: Norm, floor: f64) -> Tensor3 {
-    let wanted = norm.weighted(absolute(hessian, floor));
+fn tangent(plane: &TangentPlane, hessian: Tensor, optimal: &Optimal, floor: f64) -> Tensor3 {
+    let wanted = optimal.of(hessian, absolute(hessian, floor));
     plane.extend(wanted, wanted.eigen().large)
 }
 
@@ -138,9 +138,10 @@ pub(crate) fn recovered_on(input: &Input, values: &[f64], norm: Norm) -> Result<
     if mean <= rounding(values, area) || FLOOR * mean == 0.0 {
         return Err(vanishing());
     }
-    let metric = |(plane, hessian): &(TangentPlane, Tensor)| optimal(plane, *hessian, norm, FLOOR * mean);
+    let optimal = Optimal::new(norm);
+    let metric = |(plane, hessian): &(TangentPlane, Tensor)| tangent(plane, *hessian, &optimal, FLOOR * mean);
     let fits: Vec<Option<Tensor3>> = found.iter().map(|found| found.as_ref().map(metric)).collect();
-    let least = norm.weighted(Tensor::isotropic(1.0) * (FLOOR * mean));
+    let least = optimal.of(Tensor::default(), Tensor::isotropic(1.0) * (FLOOR * mean));
     Sampled::filled(surface, &fits, Tensor3::IDENTITY * least.xx)
 }
 
