@@ -8,8 +8,8 @@ use crate::error::{Error, Result};
 use crate::geometry::{Jet, Point, Tensor, Vector, centroid};
 use crate::mesh::{Located, Locator, Mesh};
 
-/// The metric in which a unit mesh has the least L^p error of interpolating a function by polynomials of degree 1 (Loseille and Alauzet 2011: its Hessian's
-/// absolute value), 2 or 3 (on straight triangles; Mirebeau 2010: what bounds the form of the next derivatives), times `Norm::weight`. It is
+/// The metric in which a unit mesh has the least L^p error of interpolating a function by polynomials of degree 1 (`Optimal`), 2 or 3 (on straight
+/// triangles; Mirebeau 2010: what bounds the form of the next derivatives, times `Norm::weight`). It is
 /// defined up to a factor: scale it to a number of vertices or a complexity.
 #[derive(Clone, Debug)]
 pub struct Hessian {

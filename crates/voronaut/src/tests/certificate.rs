@@ -290,8 +290,8 @@ fn tilted() -> (Input, impl Fn(Point) -> Point3 + Copy) {
 /// What is said of the plane is said of a plane in space, and there, too, is a canvas made for which it holds.
 #[test]
 fn a_plane_in_space_is_certified_as_the_plane_is() {
-    let (square, flat) = (Domain::shape("rect:0,0,1,1").unwrap(), turning(26.0));
-    let seeds = lattice(Map([26.0 * 1.5_f64.sqrt(), 0.0, 26.0]), 0.02, &mut Random(5));
+    let (square, flat) = (Domain::shape("rect:0,0,1,1").unwrap(), turning(13.0));
+    let seeds = lattice(Map([13.0 * 1.5_f64.sqrt(), 0.0, 13.0]), 0.02, &mut Random(5));
     let canvas = Canvas::intrinsic(&square, &flat, 80 * seeds.len()).unwrap();
     let truth = varied(&flat, &seeds, &canvas).certificate;
     let (input, lifted) = tilted();
