@@ -9,9 +9,9 @@ use crate::dual::Moving;
 use crate::error::{Error, Result};
 use crate::mesh::Mesh;
 use crate::metric::{Expression, Norm};
-use crate::optimise::{FitOptions, Patience, Polished, fit, polish_on_surface};
+use crate::optimise::{FitOptions, Patience, Polished, fit, polish_on_surface, polishing_norm};
 use crate::progress::Progress;
-use crate::quality::{self, Deviation, Meetings, Position, SurfaceFidelity, distances_around};
+use crate::quality::{self, Deviation, Meetings, Position, SurfaceFidelity, distances_around, interpolation_error_on};
 use crate::sampling::{MeasuredCurves, demand_memory};
 use crate::surface::metric::{Closer, Finer, SurfaceMetric};
 use crate::surface::{Component, Implicit, Input};
@@ -285,7 +285,7 @@ impl<'a> Setting<'a> {
         self.options.polish > 0 && self.options.seeding != Seeding::Protected
     }
 
-    /// Polishes a mesh for a function; where what comes out is no mesh it stays as it was.
+    /// Polishes a mesh for a function; where what comes out is no mesh, or no better one by the surface itself, it stays as it was.
     fn polished(
         &self,
         pass: &mut Pass,
@@ -304,16 +304,20 @@ impl<'a> Setting<'a> {
         let (better, faulty) = self.checked(pass)?;
         let stray = |mesh: &Mesh| (self.input.surface.area() - area(mesh)).abs();
         let is_as_near = stray(&better) <= NEARLY * stray(mesh) + ROUNDING * self.input.surface.area();
-        if faulty.is_empty() && is_as_near {
+        // Polishing takes the surface to be smooth between vertices.
+        let error = |mesh: &Mesh| Ok(interpolation_error_on(mesh, self.input, function, polishing_norm(norm))?.norm);
+        let why = if !faulty.is_empty() {
+            format!("{} triangles would meet or fold over", faulty.len())
+        } else if !is_as_near {
+            "where the function is even, triangles would be too large for the surface".into()
+        } else if error(&better)? > error(mesh)? {
+            "between vertices the surface is too uneven to say how the function goes there".into()
+        } else {
             *mesh = better;
             return Ok(polished);
-        }
+        };
         pass.dual.take_back(&before);
-        notes.push(if is_as_near {
-            format!("not polished: {} triangles would meet or fold over", faulty.len())
-        } else {
-            "not polished: where the function is even, triangles would be too large for the surface".into()
-        });
+        notes.push(format!("not polished: {why}"));
         Ok(Polished { error: polished.error.into_iter().take(1).collect(), ..Polished::default() })
     }
 
@@ -403,7 +407,6 @@ mod tests {
     use super::super::{GradedAt, MetricOptions, SurfaceSource, metric_on_surface};
     use super::*;
     use crate::progress::Silent;
-    use crate::quality::interpolation_error_on;
     use crate::surface::metric::Spec;
 
     /// A front on triangles with creases: polishing lowers the error that is measured elsewhere, keeps the
@@ -437,6 +440,28 @@ mod tests {
                 assert!(place.position.distance(p.into()) < 1e-9, "{p:?}");
             }
         }
+    }
+
+    /// On bumps as large as triangles what polishing takes for the surface between vertices is not there.
+    #[test]
+    fn polishing_does_not_raise_the_error_on_uneven_surfaces() {
+        let mut bumpy = crate::metric::nodal::test_meshes::grid(40, 0.0);
+        for p in &mut bumpy.points {
+            p[2] = 0.02 * (25.0 * p[0]).sin() * (25.0 * p[1]).sin();
+        }
+        let input = Input::new(crate::surface::Surface::new(&bumpy).unwrap(), None);
+        let spec = Spec::parse("hessian:tanh(10*(x + 0.1*sin(5*y) - 0.5 + z))").unwrap();
+        let Spec::Hessian(function) = &spec else { panic!("of a function") };
+        let at = GradedAt::of(Some(300), None);
+        let metric = metric_on_surface(SurfaceSource::Named(&spec), &input, &MetricOptions::default(), at).unwrap();
+        let made = |polish: usize| {
+            let options = MeshOptions { vertices: Some(300), polish, lloyd: 10, ..MeshOptions::default() };
+            mesh_surface(&input, metric.as_ref(), Some((function, Norm::default())), &options, &Silent).unwrap()
+        };
+        let (plain, polished) = (made(0), made(10));
+        let error = |made: &Meshed| interpolation_error_on(&made.mesh, &input, function, Norm::default()).unwrap().norm;
+        assert!(error(&polished) <= error(&plain));
+        assert!(polished.notes.iter().any(|note| note.contains("too uneven")), "{:?}", polished.notes);
     }
 
     /// Away from a front the error asks for no small triangles, and the sphere does.
