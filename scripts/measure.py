@@ -573,6 +573,11 @@ def benchmark_shock():
     return benchmark("shock")
 
 
+@table("ffbamg")
+def benchmark_hessian():
+    return benchmark("hessian")
+
+
 @table("node", "npm", os.environ.get("CHROMIUM", "chromium"))
 def pages():
     printed = run(ROOT / "scripts/test_page", "--measure")
