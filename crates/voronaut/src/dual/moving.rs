@@ -17,7 +17,7 @@ pub(crate) trait Moving: Sync {
     /// Seeds, edges, and the metric at the seeds, to come back to.
     type Saved: Sync;
     /// A place with what the metric is there.
-    type Site: Copy + Send + Sync;
+    type Site: Copy + PartialEq + Send + Sync;
 
     /// Where the seeds are, by id, and the triangles.
     fn sketch(&self) -> Sketch;
@@ -75,6 +75,10 @@ pub(crate) trait Moving: Sync {
     fn quality(&self, corners: [Self::Site; 3]) -> f64;
     /// The metric length of a straight edge.
     fn straight_length(&self, ends: [Self::Site; 2]) -> f64;
+    /// A site that several edges are measured from, with what these have in common.
+    fn ready(&self, site: Self::Site) -> Self::Site {
+        site
+    }
     /// After a seed has moved: measures the metric there and flips around it.
     fn settle_move(&mut self, v: VertexId);
 }
@@ -97,7 +101,7 @@ pub(crate) struct Saved {
 }
 
 /// A point and the logarithm of the tensor there.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 pub(crate) struct Site {
     at: Point,
     log: Tensor,

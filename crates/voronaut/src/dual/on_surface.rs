@@ -227,11 +227,37 @@ impl<'a> SurfaceDual<'a> {
         (logs.iter().sum::<f64>() / logs.len().max(1) as f64).exponential()
     }
 
+    /// Where a move leads a seed, unless the surface turns away.
+    fn landing(&self, v: VertexId, by: Vector) -> Option<Landing> {
+        let place = self.place_after(v, by)?;
+        let normal = self.input.normal(&place);
+        (normal.dot(self.state.planes[v.index()].normal) >= UPRIGHT).then_some(Landing { place, normal })
+    }
+
+    /// Moves a seed there, unless a triangle would turn over; says whether it did.
+    fn land(&mut self, v: VertexId, Landing { place, normal }: Landing) -> bool {
+        let topology = self.topology();
+        let stands = |h: HalfEdge| {
+            let [a, b] = [topology.target(h), topology.apex(h)];
+            let normals = [normal, self.state.facing[a.index()], self.state.facing[b.index()]];
+            let after = upright([place.position, self.position(a), self.position(b)], normals);
+            after >= UPRIGHT || after >= self.upright([v, a, b])
+        };
+        if !topology.star(v).all(stands) {
+            return false;
+        }
+        self.state.places[v.index()] = place;
+        self.state.planes[v.index()] = self.state.planes[v.index()].turned(normal);
+        self.state.facing[v.index()] = normal;
+        self.forget_lengths(self.topology().star(v).flat_map(|h| [h, h.prev()]).collect());
+        true
+    }
+
     /// A place with the metric there, scaled.
     fn site_of(&self, place: Place) -> SurfaceSite {
         let normal = self.input().normal(&place);
         let tensor = self.metric().at(&place) * self.factor();
-        SurfaceSite { tensor, log: tensor.log(), place: Place { normal, ..place } }
+        SurfaceSite { tensor, log: None, place: Place { normal, ..place } }
     }
 }
 
@@ -245,12 +271,25 @@ fn upright([a, b, c]: [Point3; 3], normals: [Vector3; 3]) -> f64 {
     normals.iter().map(|n| n.dot(normal)).fold(1.0, f64::min)
 }
 
-/// A place of a surface, the tensor there and its logarithm.
+/// Where a seed comes to lie, and the surface's normal there.
 #[derive(Clone, Copy)]
+struct Landing {
+    place: Place,
+    normal: Vector3,
+}
+
+/// A place of a surface, the tensor there and, where that was asked for, its logarithm.
+#[derive(Clone, Copy, PartialEq)]
 pub(crate) struct SurfaceSite {
     place: Place,
     tensor: Tensor3,
-    log: Tensor3,
+    log: Option<Tensor3>,
+}
+
+impl SurfaceSite {
+    fn log(&self) -> Tensor3 {
+        self.log.unwrap_or_else(|| self.tensor.log())
+    }
 }
 
 impl Moving for SurfaceDual<'_> {
@@ -282,27 +321,15 @@ impl Moving for SurfaceDual<'_> {
     }
 
     fn shift_by(&mut self, v: VertexId, by: Vector) -> bool {
-        let plane = self.state.planes[v.index()];
-        let Some(place) = self.place_after(v, by) else { return false };
-        let normal = self.input.normal(&place);
-        if normal.dot(plane.normal) < UPRIGHT {
-            return false;
-        }
-        let topology = self.topology();
-        let stands = |h: HalfEdge| {
-            let [a, b] = [topology.target(h), topology.apex(h)];
-            let normals = [normal, self.state.facing[a.index()], self.state.facing[b.index()]];
-            let after = upright([place.position, self.position(a), self.position(b)], normals);
-            after >= UPRIGHT || after >= self.upright([v, a, b])
-        };
-        if !topology.star(v).all(stands) {
-            return false;
-        }
-        self.state.places[v.index()] = place;
-        self.state.planes[v.index()] = plane.turned(normal);
-        self.state.facing[v.index()] = normal;
-        self.forget_lengths(self.topology().star(v).flat_map(|h| [h, h.prev()]).collect());
-        true
+        self.landing(v, by).is_some_and(|landing| self.land(v, landing))
+    }
+
+    /// Where they come to lie is found side by side.
+    fn shift_together(&mut self, moves: &[(VertexId, Vector)]) -> Vec<bool> {
+        let found = moves.par_iter().with_min_len(64).map(|&(v, by)| self.landing(v, by));
+        let found: Vec<Option<Landing>> = found.collect();
+        let landings = moves.iter().zip(found);
+        landings.map(|(&(v, _), found)| found.is_some_and(|landing| self.land(v, landing))).collect()
     }
 
     /// Lengths of edges that a rough metric makes slow to measure, where they are not known.
@@ -354,7 +381,11 @@ impl Moving for SurfaceDual<'_> {
     }
 
     fn straight_length(&self, [a, b]: [SurfaceSite; 2]) -> f64 {
-        ((a.log + b.log) * 0.5).exp().length(b.place.position - a.place.position)
+        ((a.log() + b.log()) * 0.5).exp().length(b.place.position - a.place.position)
+    }
+
+    fn ready(&self, site: SurfaceSite) -> SurfaceSite {
+        SurfaceSite { log: Some(site.log()), ..site }
     }
 
     fn settle_move(&mut self, v: VertexId) {

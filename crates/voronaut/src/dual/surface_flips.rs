@@ -19,10 +19,27 @@ impl SurfaceDual<'_> {
     pub(crate) fn flip_all(&mut self) -> u64 {
         self.measure();
         let edges: Vec<HalfEdge> = self.topology().edges().collect();
+        let lengths = self.estimates(&edges);
         let topology = &self.state.topology;
-        let wants = |&h: &HalfEdge| !topology.is_fixed(h) && self.margin(h).value < -TIE;
+        let wants = |&h: &HalfEdge| {
+            let sides = topology.twin(h).map(|t| [h, h.prev(), h.next(), t.next(), t.prev()]);
+            let margin =
+                || sides.map_or(Margin::UNKNOWN, |sides| margin_of_estimates(sides.map(|h| lengths[h.index()])));
+            !topology.is_fixed(h) && margin().value < -TIE
+        };
         let edges = edges.into_par_iter().with_min_len(64).filter(wants).collect();
         self.flip_by(edges, Self::margin)
+    }
+
+    /// Lengths by half-edge, of edges once each: each is a side of five quads.
+    fn estimates(&self, edges: &[HalfEdge]) -> Vec<Length> {
+        let topology = self.topology();
+        let found: Vec<Length> = edges.par_iter().with_min_len(64).map(|&h| self.estimate(topology.ends(h))).collect();
+        let mut lengths = vec![Length { value: f64::NAN, error: f64::INFINITY }; 3 * topology.face_slots()];
+        for (&h, length) in edges.iter().zip(found) {
+            topology.sides(h).for_each(|side| lengths[side.index()] = length);
+        }
+        lengths
     }
 
     /// Flips an edge, if that leaves a triangulation; says whether it did.

@@ -61,7 +61,7 @@ const TURNS: usize = 6;
 fn mean_error(norm: Norm, t: f64, nodes: &[Node]) -> f64 {
     let sides = |turn: usize| {
         [0, 1, 2].map(|side| {
-            let (sine, cosine) = (FRAC_PI_3 * (side as f64 + turn as f64 / TURNS as f64)).sine_and_cosine();
+            let (sine, cosine) = (FRAC_PI_3 * (f64::from(side) + turn as f64 / TURNS as f64)).sine_and_cosine();
             cosine * cosine + t * sine * sine
         })
     };

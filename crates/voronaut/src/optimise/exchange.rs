@@ -11,6 +11,7 @@ use crate::planar::Location;
 use crate::progress::Silent;
 use crate::sampling::{Fill, insert_spaced, refine};
 use crate::triangulation::{HalfEdge, VertexId};
+use std::collections::BTreeMap;
 
 /// Edges shorter than this in the metric (just below the unit range) mark seeds that crowd.
 const SHORT: f64 = 0.66;
@@ -76,8 +77,9 @@ pub(crate) fn meet_blocked_flips(dual: &mut Dual, most: usize) -> usize {
 }
 
 /// Lengths of the moves that are tried (metric length), and directions of each.
-const LENGTHS: [f64; 4] = [0.2, 0.1, 0.05, 0.02];
-const DIRECTIONS: usize = 12;
+const LENGTHS: [f64; 4] = [0.2, 0.1, 0.05, SHORTEST];
+const SHORTEST: f64 = 0.02;
+const WAYS: usize = 12;
 /// A move must raise the least quality by this at least.
 const GAIN: f64 = 1e-3;
 /// Edges whose metric length has a logarithm of at most this size are well within the unit range.
@@ -87,22 +89,64 @@ const POOR: f64 = 2.0 * NEEDLE;
 /// Moves of one seed.
 const MOVES: usize = 6;
 
-/// Moves the free corners of the poorest triangles, at most so many, each to where the least quality of the triangles around it is
-/// greatest, by trial; quality as it is measured of a mesh, in the log-Euclidean mean of the tensors at the corners. Returns
-/// how many seeds moved.
+/// Moves corners of poor triangles, each to where the least quality of the triangles around it is greatest, by trial; quality as it is
+/// measured of a mesh, in the log-Euclidean mean of the tensors at the corners.
 ///
-/// Relaxation equalises cells, of which a triangle beside the tip of a cape knows little. The energy may rise a little.
-pub(crate) fn mend_worst(dual: &mut impl Moving, most: usize) -> usize {
-    let poorest: Vec<[VertexId; 3]> = by_quality(dual).into_iter().take(most).map(|(_, corners)| corners).collect();
-    mend_corners(dual, poorest, Lengths::Kept)
+/// Relaxation equalises cells, of which a triangle beside the tip of a cape knows little. The energy may rise a little. The metric's factor
+/// stays from one call to the next.
+pub(crate) struct Mending<M: Moving> {
+    /// Of seeds that no trial was better for: where they and their neighbours were.
+    in_vain: BTreeMap<(VertexId, Lengths), Ring<M::Site>>,
 }
 
-/// The same of all triangles that are needles, or nearly, whatever lengths become: what the mesh is measured by asks for the metric at the closest places, and
-/// may find less.
-pub(crate) fn mend_needles(dual: &mut impl Moving) -> usize {
-    let poor = by_quality(dual).into_iter().take_while(|(quality, _)| *quality < POOR).map(|(_, corners)| corners);
-    let poor: Vec<[VertexId; 3]> = poor.collect();
-    mend_corners(dual, poor, Lengths::AfterNeedles)
+/// A seed's place, and the triangles around it by their other corners.
+#[derive(PartialEq)]
+struct Ring<S> {
+    centre: S,
+    links: Vec<[S; 2]>,
+}
+
+impl<M: Moving> Default for Mending<M> {
+    fn default() -> Self {
+        Self { in_vain: BTreeMap::new() }
+    }
+}
+
+impl<M: Moving> Mending<M> {
+    /// Moves the free corners of the poorest triangles, at most so many. Returns how many seeds moved.
+    pub(crate) fn worst(&mut self, dual: &mut M, most: usize) -> usize {
+        let poorest: Vec<[VertexId; 3]> = by_quality(dual).into_iter().take(most).map(|(_, corners)| corners).collect();
+        self.corners(dual, poorest, Lengths::Kept)
+    }
+
+    /// The same of all triangles that are needles, or nearly, whatever lengths become: what the mesh is measured by asks for the metric at the closest
+    /// places, and may find less.
+    pub(crate) fn needles(&mut self, dual: &mut M) -> usize {
+        let poor = by_quality(dual).into_iter().take_while(|(quality, _)| *quality < POOR).map(|(_, corners)| corners);
+        let poor: Vec<[VertexId; 3]> = poor.collect();
+        self.corners(dual, poor, Lengths::AfterNeedles)
+    }
+
+    fn corners(&mut self, dual: &mut M, triangles: Vec<[VertexId; 3]>, lengths: Lengths) -> usize {
+        let corners = triangles.into_iter().flatten();
+        let free: Vec<VertexId> = corners.filter(|&v| dual.kind(v) == Kind::Free).collect();
+        free.into_iter().filter(|&v| self.corner(dual, v, lengths)).count()
+    }
+
+    /// Says whether the seed moved.
+    fn corner(&mut self, dual: &mut M, v: VertexId, lengths: Lengths) -> bool {
+        let topology = dual.topology();
+        let link = |h: HalfEdge| [dual.ready(dual.site(topology.target(h))), dual.site(topology.apex(h))];
+        let ring = Ring { centre: dual.ready(dual.site(v)), links: topology.star(v).map(link).collect() };
+        if self.in_vain.get(&(v, lengths)) == Some(&ring) {
+            return false;
+        }
+        let has_moved = mend(dual, v, &ring, lengths);
+        if !has_moved {
+            self.in_vain.insert((v, lengths), ring);
+        }
+        has_moved
+    }
 }
 
 /// The triangles by their quality, the poorest first.
@@ -116,14 +160,8 @@ fn by_quality(dual: &impl Moving) -> Vec<(f64, [VertexId; 3])> {
     ranked(measured.collect::<Vec<_>>())
 }
 
-fn mend_corners(dual: &mut impl Moving, triangles: Vec<[VertexId; 3]>, lengths: Lengths) -> usize {
-    let corners = triangles.into_iter().flatten();
-    let free: Vec<VertexId> = corners.filter(|&v| dual.kind(v) == Kind::Free).collect();
-    free.into_iter().filter(|&v| mend(dual, v, lengths)).count()
-}
-
 /// What counts where a triangle is a needle.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Lengths {
     /// That no edge leaves the unit range.
     Kept,
@@ -133,42 +171,53 @@ enum Lengths {
 
 /// Climbs from one trial to the next. No edge may leave the unit range for it, or get farther out, unless needles come first, or
 /// the quality is poor beside an edge that must stay whole and is too long.
-fn mend<M: Moving>(dual: &mut M, v: VertexId, lengths: Lengths) -> bool {
+fn mend<M: Moving>(dual: &mut M, v: VertexId, ring: &Ring<M::Site>, lengths: Lengths) -> bool {
     let topology = dual.topology();
-    let ring: Vec<[M::Site; 2]> =
-        topology.star(v).map(|h| [topology.target(h), topology.apex(h)].map(|u| dual.site(u))).collect();
     let is_long = |h: HalfEdge| {
         let ends = topology.ends(h).map(|u| dual.site(u));
         topology.is_fixed(h) && dual.straight_length(ends).logarithm() > UNIT
     };
     let is_beside = topology.star(v).any(|h| is_long(h.next()));
     let misfit = |dual: &M, site: M::Site, u: M::Site| dual.straight_length([site, u]).logarithm().abs();
-    let worst_edge = |dual: &M, site: M::Site| ring.iter().map(|&[u, _]| misfit(dual, site, u)).fold(0.0, f64::max);
-    let usual = worst_edge(dual, dual.site(v)).max(UNIT);
-    // The least quality around, where that is at least so much: most trials are told by their first triangles.
-    let least = |dual: &M, site: M::Site, floor: f64| {
-        ring.iter().map(|&[a, b]| dual.quality([site, a, b])).try_fold(f64::INFINITY, |least, quality| {
-            let least = least.min(quality);
-            (least >= floor).then_some(least)
-        })
-    };
-    let mut now = least(dual, dual.site(v), f64::NEG_INFINITY).unwrap_or(f64::NEG_INFINITY);
+    let usual = ring.links.iter().map(|&[u, _]| misfit(dual, ring.centre, u)).fold(UNIT, f64::max);
     let mut has_moved = false;
     for _ in 0..MOVES {
+        // The poorest triangle first: it tells of most trials that they are no better.
+        let here = dual.site(v);
+        let by_quality = ranked(ring.links.iter().zip(0..).map(|(&[a, b], i)| (dual.quality([here, a, b]), i)));
+        let now = by_quality.first().map_or(f64::NEG_INFINITY, |&(quality, _)| quality);
+        let links: Vec<[M::Site; 2]> = by_quality.into_iter().map(|(_, i): (f64, usize)| ring.links[i]).collect();
+        // The least quality around, where that is at least so much.
+        let least = |site: M::Site, floor: f64| {
+            links.iter().map(|&[a, b]| dual.quality([site, a, b])).try_fold(f64::INFINITY, |least, quality| {
+                let least = least.min(quality);
+                (least >= floor).then_some(least)
+            })
+        };
         let allowed = if (lengths == Lengths::AfterNeedles && now < NEEDLE) || (is_beside && now < POOR) {
             f64::INFINITY
         } else {
             usual
         };
-        let tried: Vec<Vector> = trials(dual.local(v).tensor.cholesky()).collect();
+        // Where the metric is even, quality is nowhere less on the way to a place where it is greater: triangles of at least some quality have their
+        // corners in convex sets.
+        let rises =
+            |by: &Vector| now < 0.0 || dual.site_after(v, *by * SHORTEST).is_some_and(|at| least(at, now).is_some());
+        let ways = ways(dual.local(v).tensor.cholesky());
+        let rising: Vec<Vector> = ways.into_par_iter().with_min_len(WAYS / 4).filter(rises).collect();
+        let tried: Vec<Vector> = LENGTHS.iter().flat_map(|&length| rising.iter().map(move |&by| by * length)).collect();
         let gained = |&by: &Vector| {
             let site = dual.site_after(v, by)?;
-            least(dual, site, now + GAIN).filter(|_| worst_edge(dual, site) <= allowed)
+            let quality = least(site, now + GAIN)?;
+            let site = dual.ready(site);
+            links.iter().all(|&[u, _]| misfit(dual, site, u) <= allowed).then_some(quality)
         };
-        let gains: Vec<Option<f64>> = tried.par_iter().map(gained).collect();
+        let gains: Vec<Option<f64>> = tried.par_iter().with_min_len(WAYS / 2).map(gained).collect();
         let better = ranked(gains.into_iter().enumerate().filter_map(|(i, gain)| Some((-gain?, i))));
-        let Some((loss, _)) = better.into_iter().find(|&(_, i)| dual.shift_by(v, tried[i])) else { break };
-        (now, has_moved) = (-loss, true);
+        if !better.into_iter().any(|(_, i)| dual.shift_by(v, tried[i])) {
+            break;
+        }
+        has_moved = true;
     }
     if has_moved {
         dual.settle_move(v);
@@ -176,11 +225,11 @@ fn mend<M: Moving>(dual: &mut M, v: VertexId, lengths: Lengths) -> bool {
     has_moved
 }
 
-fn trials(frame: [f64; 3]) -> impl Iterator<Item = Vector> {
-    LENGTHS.into_iter().flat_map(move |length| {
-        (0..DIRECTIONS).map(move |k| {
-            let (sine, cosine) = (std::f64::consts::TAU * k as f64 / DIRECTIONS as f64).sine_and_cosine();
-            from_frame(frame, Vector::new(length * cosine, length * sine))
-        })
-    })
+/// Unit vectors all around.
+fn ways(frame: [f64; 3]) -> Vec<Vector> {
+    let way = |k: usize| {
+        let (sine, cosine) = (std::f64::consts::TAU * k as f64 / WAYS as f64).sine_and_cosine();
+        from_frame(frame, Vector::new(cosine, sine))
+    };
+    (0..WAYS).map(way).collect()
 }

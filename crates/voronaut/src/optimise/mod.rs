@@ -20,7 +20,7 @@ mod trials;
 
 pub use cell::Cell;
 pub(crate) use cells::Cells;
-pub(crate) use exchange::{exchange, meet_blocked_flips, mend_needles, mend_worst};
+pub(crate) use exchange::{Mending, exchange, meet_blocked_flips};
 pub(crate) use fit::{FitOptions, fit};
 pub use lloyd::Relaxed;
 pub(crate) use lloyd::{Patience, relax};

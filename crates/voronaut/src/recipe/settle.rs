@@ -10,7 +10,7 @@ use crate::dual::{Consultation, Disagreement, Dual, Effort, Moving};
 use crate::error::Result;
 use crate::geodesic::{Margin, Method};
 use crate::geometry::Point;
-use crate::optimise::{Cells, OnCanvas, Patience, Relaxed, exchange, meet_blocked_flips, mend_worst, relax};
+use crate::optimise::{Cells, Mending, OnCanvas, Patience, Relaxed, exchange, meet_blocked_flips, relax};
 use crate::progress::Progress;
 use crate::sampling::{demand_memory, refine_farthest};
 use crate::triangulation::VertexId;
@@ -95,7 +95,8 @@ impl Job<'_> {
         let relaxed = self.relax_in_parts(dual, &cells, effort.parts(self.is_even), patience, self.progress)?;
         self.fit_scale(dual);
         if self.exchanges() {
-            mend_worst(dual, (dual.topology().face_count() as f64 * MENDED_SHARE).ceil() as usize);
+            let poor = (dual.topology().face_count() as f64 * MENDED_SHARE).ceil() as usize;
+            Mending::default().worst(dual, poor);
             dual.take_touched();
         }
         dual.verdict()?;

@@ -13,7 +13,7 @@ use crate::geometry::Point3;
 use crate::lists::in_order;
 use crate::mesh::Mesh;
 use crate::metric::{Expression, Norm};
-use crate::optimise::{Patience, Relaxed, mend_needles, mend_worst, relax};
+use crate::optimise::{Mending, Patience, Relaxed, relax};
 use crate::progress::Progress;
 use crate::quality::{self, Meetings};
 use crate::rdt::{OnSurface, Rdt, Start};
@@ -309,9 +309,9 @@ impl Pass<'_> {
 
     /// Mends its needles, and says whether it did.
     pub(super) fn mend_needles(&mut self) -> bool {
-        let mut changes = 0;
+        let (mut mending, mut changes) = (Mending::default(), 0);
         for _ in 0..MENDINGS {
-            changes += self.dual.round_off() + mend_needles(&mut self.dual) as u64;
+            changes += self.dual.round_off() + mending.needles(&mut self.dual) as u64;
         }
         changes > 0
     }
@@ -410,10 +410,11 @@ fn no_features() -> Error {
 /// Mends the worst triangles.
 fn mend(dual: &mut SurfaceDual) {
     let poor = (dual.topology().face_count() as f64 * MENDED_SHARE).ceil() as usize;
+    let mut mending = Mending::default();
     for _ in 0..MENDINGS {
         dual.round_off();
-        mend_worst(dual, poor);
-        mend_needles(dual);
+        mending.worst(dual, poor);
+        mending.needles(dual);
     }
     dual.round_off();
 }
