@@ -29,7 +29,7 @@ pub(crate) use consistent::{Consistency, NEEDS_MORE, UNIT_RADIUS, consistent};
 pub use draped::Draped;
 pub(crate) use draped::Homes;
 pub(crate) use lengths::metric_area;
-pub(crate) use on_surface::{area_of_surface, even_on_surface};
+pub(crate) use on_surface::even_on_surface;
 pub(crate) use refine::COARSE;
 pub use star_set::{StarFigures, StarSet};
 pub use way::Way;

@@ -25,6 +25,9 @@ const FLAT: f64 = 1e-9;
 /// Slopes of the surface over a chord that tell its length; steeper ones count as this.
 const STEEP: f64 = 0.8;
 
+/// By a factor nearer to one than this, expansions of the metric hold for the unit after it as well.
+const ALIKE: f64 = 1.5;
+
 /// The Riemannian Delaunay triangulation of seeds on a surface, with straight edges in space: the mesh in the making.
 pub(crate) struct SurfaceDual<'a> {
     pub(super) input: &'a Input,
@@ -110,9 +113,15 @@ impl<'a> SurfaceDual<'a> {
     /// # Errors
     /// As for [`SurfaceDual::new`].
     pub(crate) fn rescale(&mut self, factor: f64) -> Result<()> {
+        let ratio = factor / self.factor;
         self.factor = factor;
-        self.forget_lengths(self.topology().edges().collect());
-        self.measure_all()
+        if !(1.0 / ALIKE..=ALIKE).contains(&ratio) {
+            self.forget_lengths(self.topology().edges().collect());
+            return self.measure_all();
+        }
+        self.state.locals.par_iter_mut().with_min_len(1024).for_each(|local| *local = local.times(ratio));
+        self.state.topology.stretch(ratio.sqrt());
+        Ok(())
     }
 
     fn measure_all(&mut self) -> Result<()> {
@@ -160,19 +169,17 @@ impl<'a> SurfaceDual<'a> {
         self.seen(seed, place.position, self.input.normal(place))
     }
 
-    /// In the direction of the projection, as long as the way along the surface, by the cubic over the chord.
     fn seen(&self, from: VertexId, to: Point3, normal: Vector3) -> Vector {
-        let e = to - self.position(from);
-        let plane = &self.state.planes[from.index()];
-        let flat = plane.flatten(e);
-        let square = e.dot(e);
-        let [a, b] = [plane.normal, normal].map(|normal| {
-            let sine = -normal.dot(e) / square.sqrt();
-            (sine / (1.0 - sine * sine).max(f64::MIN_POSITIVE).sqrt()).clamp(-STEEP, STEEP)
-        });
-        let length = square.sqrt() * (1.0 + (2.0 * (a * a + b * b) - a * b) / 30.0);
-        let norm = flat.norm();
-        if norm > 0.0 { flat * (length / norm) } else { Vector::default() }
+        let (e, plane) = (to - self.position(from), &self.state.planes[from.index()]);
+        ahead(plane.flatten(e), length_over(e, [plane.normal, normal]))
+    }
+
+    /// Where two seeds are, each seen from the other; of the second the opposite.
+    pub(super) fn offsets(&self, ends: [VertexId; 2]) -> [Vector; 2] {
+        let [from, to] = ends.map(|v| self.position(v));
+        let (e, planes) = (to - from, ends.map(|v| &self.state.planes[v.index()]));
+        let length = length_over(e, planes.map(|plane| plane.normal));
+        planes.map(|plane| ahead(plane.flatten(e), length))
     }
 
     /// Where a seed comes to lie that is moved by a vector of its tangent plane.
@@ -253,12 +260,39 @@ impl<'a> SurfaceDual<'a> {
         true
     }
 
+    /// Whether a triangle would turn over if its corners that move came to land there.
+    fn would_turn(&self, f: FaceId, landings: &[Option<Landing>], moving: &[bool]) -> bool {
+        let corners = self.topology().corners(f);
+        let landing = |v: VertexId| landings[v.index()].filter(|_| moving[v.index()]);
+        let then = corners.map(|v| {
+            landing(v).map_or((self.position(v), self.state.facing[v.index()]), |to| (to.place.position, to.normal))
+        });
+        let after = upright(then.map(|(at, _)| at), then.map(|(_, normal)| normal));
+        after < UPRIGHT && after < self.upright(corners)
+    }
+
     /// A place with the metric there, scaled.
     fn site_of(&self, place: Place) -> SurfaceSite {
         let normal = self.input().normal(&place);
         let tensor = self.metric().at(&place) * self.factor();
         SurfaceSite { tensor, log: None, place: Place { normal, ..place } }
     }
+}
+
+/// The length of a surface over a chord, by its normals at both ends and the cubic that they make.
+fn length_over(e: Vector3, normals: [Vector3; 2]) -> f64 {
+    let length = e.norm();
+    let [a, b] = normals.map(|normal| {
+        let sine = -normal.dot(e) / length;
+        (sine / (1.0 - sine * sine).max(f64::MIN_POSITIVE).sqrt()).clamp(-STEEP, STEEP)
+    });
+    length * (1.0 + (2.0 * (a * a + b * b) - a * b) / 30.0)
+}
+
+/// In the direction of a vector, so long.
+fn ahead(flat: Vector, length: f64) -> Vector {
+    let norm = flat.norm();
+    if norm > 0.0 { flat * (length / norm) } else { Vector::default() }
 }
 
 /// The least cosine of a triangle's normal with others; 0 of a triangle that is flat but for rounding.
@@ -324,12 +358,23 @@ impl Moving for SurfaceDual<'_> {
         self.landing(v, by).is_some_and(|landing| self.land(v, landing))
     }
 
-    /// Where they come to lie is found side by side.
     fn shift_together(&mut self, moves: &[(VertexId, Vector)]) -> Vec<bool> {
         let found = moves.par_iter().with_min_len(64).map(|&(v, by)| self.landing(v, by));
-        let found: Vec<Option<Landing>> = found.collect();
-        let landings = moves.iter().zip(found);
-        landings.map(|(&(v, _), found)| found.is_some_and(|landing| self.land(v, landing))).collect()
+        let mut landings = vec![None; self.state.places.len()];
+        moves.iter().zip(found.collect::<Vec<_>>()).for_each(|(&(v, _), found)| landings[v.index()] = found);
+        let moving = landings.iter().map(Option::is_some).collect();
+        let moving = self.topology().movable_together(moving, |f, moving| self.would_turn(f, &landings, moving));
+        let State { topology, places, planes, facing, .. } = &mut self.state;
+        let seeds = places.par_iter_mut().zip(planes).zip(facing).zip(&landings).zip(&moving).with_min_len(256);
+        seeds.for_each(|((((place, plane), facing), landing), &moves)| {
+            if let Some(landing) = landing.filter(|_| moves) {
+                (*place, *plane, *facing) = (landing.place, plane.turned(landing.normal), landing.normal);
+            }
+        });
+        let has_moved = |h: &HalfEdge| topology.ends(*h).iter().any(|v| moving[v.index()]);
+        let edges: Vec<HalfEdge> = topology.edges().filter(has_moved).collect();
+        self.forget_lengths(edges);
+        moves.iter().map(|(v, _)| moving[v.index()]).collect()
     }
 
     /// Lengths of edges that a rough metric makes slow to measure, where they are not known.

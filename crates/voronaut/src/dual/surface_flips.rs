@@ -18,28 +18,22 @@ impl SurfaceDual<'_> {
     /// Flips every edge that the metric wants flipped and the surface allows. Returns the number of flips.
     pub(crate) fn flip_all(&mut self) -> u64 {
         self.measure();
-        let edges: Vec<HalfEdge> = self.topology().edges().collect();
-        let lengths = self.estimates(&edges);
-        let topology = &self.state.topology;
-        let wants = |&h: &HalfEdge| {
-            let sides = topology.twin(h).map(|t| [h, h.prev(), h.next(), t.next(), t.prev()]);
-            let margin =
-                || sides.map_or(Margin::UNKNOWN, |sides| margin_of_estimates(sides.map(|h| lengths[h.index()])));
-            !topology.is_fixed(h) && margin().value < -TIE
-        };
-        let edges = edges.into_par_iter().with_min_len(64).filter(wants).collect();
+        let margins = self.margins().into_iter();
+        let edges = margins.filter(|(_, margin)| margin.value < -TIE).map(|(h, _)| h).collect();
         self.flip_by(edges, Self::margin)
     }
 
-    /// Lengths by half-edge, of edges once each: each is a side of five quads.
-    fn estimates(&self, edges: &[HalfEdge]) -> Vec<Length> {
+    /// The margins of all edges that may flip; each edge is measured once, for it is a side of five quads.
+    fn margins(&self) -> Vec<(HalfEdge, Margin)> {
         let topology = self.topology();
+        let edges: Vec<HalfEdge> = topology.edges().collect();
         let found: Vec<Length> = edges.par_iter().with_min_len(64).map(|&h| self.estimate(topology.ends(h))).collect();
         let mut lengths = vec![Length { value: f64::NAN, error: f64::INFINITY }; 3 * topology.face_slots()];
         for (&h, length) in edges.iter().zip(found) {
             topology.sides(h).for_each(|side| lengths[side.index()] = length);
         }
-        lengths
+        let free = edges.into_par_iter().with_min_len(256).filter(|&h| !topology.is_fixed(h));
+        free.map(|h| (h, self.margin_by(h, |side| lengths[side.index()]))).collect()
     }
 
     /// Flips an edge, if that leaves a triangulation; says whether it did.
@@ -73,8 +67,8 @@ impl SurfaceDual<'_> {
 
     /// How many edges their own lengths want flipped and the surface forbids, and the smallest margin of the others; 1 of none.
     pub(crate) fn unsettled(&self) -> (usize, f64) {
-        let margins = self.topology().edges().filter(|&h| !self.topology().is_fixed(h)).map(|h| self.margin(h));
-        let known = margins.filter(|margin| margin.error.is_finite()).map(|margin| margin.value);
+        let known = self.margins().into_iter().map(|(_, margin)| margin);
+        let known = known.filter(|margin| margin.error.is_finite()).map(|margin| margin.value);
         let (blocked, settled): (Vec<f64>, Vec<f64>) = known.partition(|&margin| margin < -TIE);
         (blocked.len(), settled.into_iter().fold(1.0, f64::min))
     }
@@ -160,7 +154,7 @@ impl SurfaceDual<'_> {
         let [u, v] = ends;
         if !self.is_rough(ends) {
             let locals = ends.map(|w| &self.state.locals[w.index()]);
-            return hermite_between(locals, [self.offset(u, v), -self.offset(v, u)]);
+            return hermite_between(locals, self.offsets(ends));
         }
         let topology = self.topology();
         let measured = topology.edge_between(u, v).map(|h| topology.length(h));
@@ -191,8 +185,12 @@ impl SurfaceDual<'_> {
 
     /// The in-circle test of an edge; [`Margin::UNKNOWN`] of one with a single face, and where lengths make no triangles.
     pub(super) fn margin(&self, h: HalfEdge) -> Margin {
-        let Some([a, b, c, d]) = self.topology().quad(h) else { return Margin::UNKNOWN };
-        margin_of_estimates([[a, b], [c, a], [b, c], [a, d], [d, b]].map(|ends| self.estimate(ends)))
+        self.margin_by(h, |side| self.estimate(self.topology().ends(side)))
+    }
+
+    fn margin_by(&self, h: HalfEdge, length: impl Fn(HalfEdge) -> Length) -> Margin {
+        let Some(t) = self.topology().twin(h) else { return Margin::UNKNOWN };
+        margin_of_estimates([h, h.prev(), h.next(), t.next(), t.prev()].map(length))
     }
 }
 

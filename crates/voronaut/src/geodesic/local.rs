@@ -64,6 +64,12 @@ impl LocalMetric {
         Self { tensor: self.tensor + self.derivative_along(by), since: self.since + by, ..*self }
     }
 
+    /// The same of the field times a factor near one: rough where it was.
+    #[must_use]
+    pub(crate) fn times(&self, factor: f64) -> Self {
+        Self { tensor: self.tensor * factor, derivative: self.derivative.map(|along| along * factor), ..*self }
+    }
+
     /// Whether that is so far from where the field was evaluated that it has to be evaluated again.
     pub(crate) fn is_due(&self) -> bool {
         self.since != Vector::default()

@@ -126,7 +126,6 @@ impl Tensor3 {
     }
 
     /// Determinant; it cancels where eigenvalues differ by more than about 1e8.
-    #[cfg(test)]
     pub(crate) fn determinant(self) -> f64 {
         let minor = Tensor::new(self.yy, self.yz, self.zz).determinant();
         let second = self.xy * self.zz - self.yz * self.xz;
@@ -181,8 +180,8 @@ impl Tensor3 {
         self.map_eigenvalues(Elementary::logarithm)
     }
 
-    /// Matrix exponential of a symmetric tensor; positive definite. By Taylor's series and squaring (Moler and Van Loan 2003),
-    /// which is many times as fast as by eigenvalues: metric fields on surfaces live by it.
+    /// Matrix exponential of a symmetric tensor; positive definite. By Taylor's series and squaring (Moler and Van Loan 2003), of the
+    /// coefficients of I, S and S^2 alone: metric fields on surfaces live by it.
     #[must_use]
     pub(crate) fn exp(self) -> Tensor3 {
         let mean = (self.xx + self.yy + self.zz) / 3.0;
@@ -191,24 +190,38 @@ impl Tensor3 {
         if !size.is_finite() || size > LARGEST {
             return self.map_eigenvalues(Elementary::exponential);
         }
+        let (mut share, mut halvings) = (1.0, 0);
         // Row sums are at most three entries.
-        let halvings = (3.0 * size / SMALL).binary_logarithm().ceil().max(0.0) as i32;
-        let small = deviation * 0.5_f64.powi(halvings);
-        let term = |sum: Tensor3, k: u32| Tensor3::IDENTITY + sum.product(small) * (1.0 / f64::from(k));
-        let series = (1..=TERMS).rev().fold(Tensor3::IDENTITY, term);
-        (0..halvings).fold(series, |root, _| root.product(root)) * mean.exponential()
+        while 3.0 * size * share > SMALL {
+            (share, halvings) = (0.5 * share, halvings + 1);
+        }
+        let small = deviation * share;
+        let square = small.squared();
+        // Without a trace S^3 = q S + d I (Cayley and Hamilton).
+        let (q, d) = (0.5 * (square.xx + square.yy + square.zz), small.determinant());
+        let term = |[a, b, c]: [f64; 3], k: u32| {
+            let share = 1.0 / f64::from(k);
+            [1.0 + c * d * share, (a + c * q) * share, b * share]
+        };
+        let series = (1..=TERMS).rev().fold([1.0, 0.0, 0.0], term);
+        let twice = |[a, b, c]: [f64; 3]| {
+            let (cubes, fourths) = (2.0 * b * c, c * c);
+            [a * a + cubes * d, 2.0 * a * b + cubes * q + fourths * d, 2.0 * a * c + b * b + fourths * q]
+        };
+        let [a, b, c] = (0..halvings).fold(series, |root, _| twice(root));
+        (Tensor3::IDENTITY * a + small * b + square * c) * mean.exponential()
     }
 
-    /// The product of two tensors with the same axes, which is symmetric.
-    fn product(self, other: Tensor3) -> Tensor3 {
-        let (a, b) = (self, other);
+    /// The product with itself.
+    fn squared(self) -> Tensor3 {
+        let Tensor3 { xx, xy, yy, xz, yz, zz } = self;
         Tensor3 {
-            xx: a.xx * b.xx + a.xy * b.xy + a.xz * b.xz,
-            xy: a.xx * b.xy + a.xy * b.yy + a.xz * b.yz,
-            yy: a.xy * b.xy + a.yy * b.yy + a.yz * b.yz,
-            xz: a.xx * b.xz + a.xy * b.yz + a.xz * b.zz,
-            yz: a.xy * b.xz + a.yy * b.yz + a.yz * b.zz,
-            zz: a.xz * b.xz + a.yz * b.yz + a.zz * b.zz,
+            xx: xx * xx + xy * xy + xz * xz,
+            xy: xy * (xx + yy) + xz * yz,
+            yy: xy * xy + yy * yy + yz * yz,
+            xz: xz * (xx + zz) + xy * yz,
+            yz: yz * (yy + zz) + xy * xz,
+            zz: xz * xz + yz * yz + zz * zz,
         }
     }
 }

@@ -2,7 +2,6 @@
 
 use super::{Planar, is_left};
 use crate::geometry::Point;
-use crate::lists::distinct;
 use crate::parallel::prelude::*;
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
 
@@ -46,28 +45,21 @@ impl Planar {
 
     /// Moves vertices all at once, but for those of faces that would not stay counter-clockwise; says which moved.
     pub(crate) fn move_together(&mut self, moves: &[(VertexId, Point)]) -> Vec<bool> {
-        let topology = &self.topology;
         let mut to = self.positions.clone();
+        let mut moving = vec![false; to.len()];
         for &(v, p) in moves {
-            to[v.index()] = p;
+            (to[v.index()], moving[v.index()]) = (p, true);
         }
-        let is_turned = |&f: &FaceId, to: &[Point]| {
-            let [a, b, c] = topology.corners(f).map(|v| to[v.index()]);
+        let at = |v: VertexId, moving: &[bool]| if moving[v.index()] { to[v.index()] } else { self.position(v) };
+        let moving = self.topology.movable_together(moving, |f, moving| {
+            let [a, b, c] = self.topology.corners(f).map(|v| at(v, moving));
             !is_left(a, b, c)
-        };
-        let faces = (0..topology.face_slots() as u32).into_par_iter().with_min_len(1024).map(FaceId);
-        let mut turned: Vec<FaceId> = faces.filter(|f| topology.is_face(*f) && is_turned(f, &to)).collect();
-        while !turned.is_empty() {
-            // Faces were counter-clockwise before: each has a corner that has moved.
-            let back = distinct(turned.iter().flat_map(|&f| topology.corners(f)));
-            let back: Vec<VertexId> = back.into_iter().filter(|v| to[v.index()] != self.positions[v.index()]).collect();
-            for v in &back {
-                to[v.index()] = self.positions[v.index()];
+        });
+        self.positions.par_iter_mut().zip(&to).zip(&moving).with_min_len(1024).for_each(|((position, &to), &moves)| {
+            if moves {
+                *position = to;
             }
-            let around = distinct(back.iter().flat_map(|&v| topology.star(v)).map(HalfEdge::face));
-            turned = around.into_iter().filter(|f| is_turned(f, &to)).collect();
-        }
-        self.positions = to;
+        });
         moves.par_iter().with_min_len(1024).map(|&(v, p)| self.position(v) == p).collect()
     }
 

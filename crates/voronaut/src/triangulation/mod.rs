@@ -222,6 +222,11 @@ impl Triangulation {
         }
     }
 
+    /// Multiplies all lengths.
+    pub(crate) fn stretch(&mut self, factor: f64) {
+        self.length.iter_mut().for_each(|length| *length *= factor);
+    }
+
     /// The constraint that the edge is part of.
     pub(crate) fn constraint(&self, h: HalfEdge) -> Option<Constraint> {
         let c = self.constraint[h.index()];

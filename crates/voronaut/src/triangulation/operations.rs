@@ -4,8 +4,33 @@
 use super::ids::NONE;
 use super::{FaceId, HalfEdge, Triangulation, VertexId};
 use crate::lists::distinct;
+use crate::parallel::prelude::*;
+
+/// Faces that are worth a thread's while.
+const FACES: usize = 256;
 
 impl Triangulation {
+    /// Which of many moves can be made all at once, by vertex slot: none of corners of faces that would turn over by what is left of
+    /// them, which the caller tells. Without moves no face does.
+    pub(crate) fn movable_together(
+        &self,
+        mut moves: Vec<bool>,
+        would_turn: impl Fn(FaceId, &[bool]) -> bool + Sync,
+    ) -> Vec<bool> {
+        let faces = (0..self.face_slots() as u32).into_par_iter().with_min_len(FACES).map(FaceId);
+        let mut turned: Vec<FaceId> = faces.filter(|&f| self.is_face(f) && would_turn(f, &moves)).collect();
+        while !turned.is_empty() {
+            let corners = distinct(turned.iter().flat_map(|&f| self.corners(f)));
+            let back: Vec<VertexId> = corners.into_iter().filter(|v| moves[v.index()]).collect();
+            for v in &back {
+                moves[v.index()] = false;
+            }
+            let around = distinct(back.iter().flat_map(|&v| self.star(v)).map(HalfEdge::face));
+            turned = around.into_iter().filter(|&f| would_turn(f, &moves)).collect();
+        }
+        moves
+    }
+
     /// A new vertex that belongs to no face yet.
     pub(crate) fn add_vertex(&mut self) -> VertexId {
         self.free_vertices.pop().unwrap_or_else(|| {

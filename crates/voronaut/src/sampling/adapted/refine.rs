@@ -3,6 +3,7 @@
 use super::UPRIGHT;
 use super::work::{Work, leaning, quality};
 use crate::geometry::NEEDLE;
+use crate::parallel::prelude::*;
 use crate::triangulation::{Flipping, HalfEdge, Lawson, Limit, Triangulation, VertexId};
 
 /// Edges longer than this (metric) are split: contraction then has vertices to choose from.
@@ -18,28 +19,34 @@ impl Work<'_> {
     /// Splits edges inside patches in the middle, the longest first, and flips, until none is too long, but for those of triangles with
     /// a longer edge on the border: as that stays, fans of ever smaller triangles would grow on it.
     pub(super) fn split_long(&mut self, most: usize) {
+        self.flip_all();
         for _ in 0..HALVINGS {
-            self.flip_all();
-            let before = self.vertex_count();
-            self.split_once(LONG, most.saturating_sub(before));
-            if self.vertex_count() == before {
+            let new = self.split_once(LONG, most.saturating_sub(self.vertex_count()));
+            if new.is_empty() {
                 return;
             }
+            // Elsewhere nothing has changed that would ask for flips.
+            let t = &self.topology;
+            let around = new.iter().flat_map(|&v| t.star(v)).flat_map(|h| [h, h.next()]).collect();
+            self.flip_from(around);
         }
     }
 
-    /// Splits edges longer than so much, no more than so many.
-    pub(super) fn split_once(&mut self, longer: f64, most: usize) {
-        let long = self.topology.edges().filter(|&h| self.is_long(h, longer)).map(|h| (self.length_of(h), h));
+    /// Splits edges longer than so much, no more than so many; the vertices on them.
+    pub(super) fn split_once(&mut self, longer: f64, most: usize) -> Vec<VertexId> {
+        let edges: Vec<HalfEdge> = self.topology.edges().collect();
+        let edges = edges.into_par_iter().with_min_len(256);
+        let long = edges.filter(|&h| self.is_long(h, longer)).map(|h| (self.length_of(h), h));
         let mut long: Vec<(f64, HalfEdge)> = long.collect();
         long.sort_by(|x, y| y.0.total_cmp(&x.0).then(x.1.cmp(&y.1)));
-        let most = self.vertex_count() + most;
+        let mut new = Vec::new();
         for (_, h) in long {
             // Splits beside it may have put another edge into this slot.
-            if self.vertex_count() < most && self.is_long(h, longer) {
-                self.split_in_the_middle(h);
+            if new.len() < most && self.is_long(h, longer) {
+                new.extend(self.split_in_the_middle(h));
             }
         }
+        new
     }
 
     fn length_of(&self, h: HalfEdge) -> f64 {
@@ -56,12 +63,11 @@ impl Work<'_> {
     }
 
     /// Splits an edge in the middle, but not where that would turn a triangle away from the surface, or make the first needle.
-    fn split_in_the_middle(&mut self, h: HalfEdge) {
+    fn split_in_the_middle(&mut self, h: HalfEdge) -> Option<VertexId> {
         let [p, q] = self.topology.ends(h).map(|v| self.at(v).place);
         let middle = p.position.lerp(q.position, 0.5);
         let place =
-            if self.keeps_edges { self.input.place_on_triangles(&p, middle) } else { self.input.lift(&p, middle) };
-        let Some(place) = place else { return };
+            if self.keeps_edges { self.input.place_on_triangles(&p, middle) } else { self.input.lift(&p, middle) }?;
         let vertex = self.vertex(place);
         let t = &self.topology;
         let halves = |side: HalfEdge| {
@@ -74,15 +80,22 @@ impl Work<'_> {
         // flips mend these.
         let poor = if self.keeps_edges { NEEDLE } else { 2.0 * NEEDLE };
         let least = if faces().any(|corners| self.quality(corners) < poor) { 0.0 } else { NEEDLE };
-        if t.sides(h).flat_map(halves).all(|half| leaning(half) >= before && quality(half) >= least) {
-            self.split(h, vertex);
-        }
+        let may_split = t.sides(h).flat_map(halves).all(|half| leaning(half) >= before && quality(half) >= least);
+        may_split.then(|| {
+            let behind = self.split(h, vertex);
+            self.topology.origin(behind)
+        })
     }
 
     /// Flips edges that are not Delaunay ([`Work::margin`]), where no triangle turns away from the surface.
     pub(super) fn flip_all(&mut self) {
+        self.flip_from(self.topology.edges().collect());
+    }
+
+    /// Flips edges that are not Delaunay, and what follows from them.
+    fn flip_from(&mut self, edges: Vec<HalfEdge>) {
         let mut lawson = Lawson::default();
-        lawson.queue(self.topology.edges());
+        lawson.queue(edges);
         lawson.pass(self, LIMIT);
     }
 }

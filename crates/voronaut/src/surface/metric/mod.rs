@@ -18,6 +18,7 @@
 //!
 //! [`Spec`] reads the second column, [`field`] makes the field; `check_tensor3` tells whether a value is a metric.
 
+mod area;
 mod bounded;
 mod curvature;
 mod finer;
@@ -29,6 +30,7 @@ mod sizing;
 mod spec;
 
 pub(crate) use crate::metric::check_tensor3;
+pub(crate) use area::metric_area;
 pub(crate) use bounded::Closer;
 pub(crate) use curvature::fit_curvatures;
 pub(crate) use curvature::{FLOOR, ImplicitCurvature, sampled_curvature};

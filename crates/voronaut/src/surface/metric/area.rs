@@ -1,0 +1,155 @@
+//! How large a surface is in a metric.
+
+use super::{SurfaceMetric, check_tensor3};
+use crate::error::Result;
+use crate::geometry::{Point3, Tensor3};
+use crate::parallel::prelude::*;
+use crate::surface::{Input, Place};
+use crate::triangulation::FaceId;
+
+/// Pieces that are enough, as a share of those asked for.
+const ENOUGH: f64 = 0.7;
+/// Times that pieces get smaller, at most: to half of their size.
+const PASSES: usize = 64;
+
+/// The metric area of a surface, the integral of sqrt(det M) over it: by the trapezoidal rule on about twice so many triangles as there
+/// are to be vertices, even in the metric, or on the surface's own where these are more.
+///
+/// The surface's triangles are halved at their longest edges, each by itself; on an equation's surface new corners are moved onto f = 0.
+///
+/// # Errors
+/// [`Error::Metric`](crate::Error::Metric) where the metric is not positive definite at a corner.
+pub(crate) fn metric_area(input: &Input, metric: &dyn SurfaceMetric, vertices: usize) -> Result<f64> {
+    let (ground, wanted) = (Ground { input, metric }, 2 * vertices);
+    let faces: Vec<FaceId> = input.surface.topology().faces().collect();
+    let pieces: Result<Vec<Piece>> = faces.into_par_iter().with_min_len(64).map(|face| ground.piece(face)).collect();
+    let pieces = pieces?;
+    let mut limit = pieces.iter().map(Piece::first_edge).fold(0.0, f64::max);
+    let mut found = Measured { count: pieces.len(), area: pieces.iter().map(Piece::area).sum() };
+    for _ in 0..PASSES {
+        let share = found.count as f64 / wanted as f64;
+        if share >= ENOUGH {
+            break;
+        }
+        // Four times as many are half as long; in a quarter of a pass more may come to light than was seen before.
+        limit *= share.sqrt().max(0.5);
+        let each = pieces.par_iter().with_min_len(16).map(|piece| {
+            let mut inside = Measured::default();
+            ground.measure(piece, limit, wanted, &mut inside).map(|()| inside)
+        });
+        let each: Vec<Measured> = each.collect::<Result<_>>()?;
+        found = each.iter().fold(Measured::default(), |sum, inside| Measured {
+            count: sum.count + inside.count,
+            area: sum.area + inside.area,
+        });
+    }
+    Ok(found.area)
+}
+
+/// Pieces, and their area.
+#[derive(Clone, Copy, Default)]
+struct Measured {
+    count: usize,
+    area: f64,
+}
+
+struct Ground<'a> {
+    input: &'a Input,
+    metric: &'a dyn SurfaceMetric,
+}
+
+/// A corner of a piece, in the triangle of the surface that the piece is of.
+#[derive(Clone, Copy)]
+struct Corner {
+    weights: [f64; 3],
+    position: Point3,
+    tensor: Tensor3,
+}
+
+/// A part of a triangle of the surface. Its longest edge is that from the first corner to the second.
+#[derive(Clone, Copy)]
+struct Piece {
+    face: FaceId,
+    corners: [Corner; 3],
+}
+
+impl Piece {
+    fn new(face: FaceId, corners: &[Corner; 3]) -> Self {
+        let turned = |first: usize| Self { face, corners: [0, 1, 2].map(|k| corners[(first + k) % 3]) };
+        let [a, b, c] = [0, 1, 2].map(turned);
+        [b, c].into_iter().fold(a, |best, other| if other.first_edge() > best.first_edge() { other } else { best })
+    }
+
+    fn first_edge(&self) -> f64 {
+        let [p, q, _] = self.corners;
+        let e = q.position - p.position;
+        0.5 * (p.tensor.length(e) + q.tensor.length(e))
+    }
+
+    fn area(&self) -> f64 {
+        let [a, b, c] = self.corners.map(|corner| corner.position);
+        let at = |corner: &Corner| 0.5 * corner.tensor.area(b - a, c - a);
+        self.corners.iter().map(at).sum::<f64>() / 3.0
+    }
+}
+
+impl Ground<'_> {
+    fn piece(&self, face: FaceId) -> Result<Piece> {
+        let [a, b, c] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+            .map(|weights| self.corner(face, weights, Point3::weighted(self.input.surface.triangle(face), weights)));
+        Ok(Piece::new(face, &[a?, b?, c?]))
+    }
+
+    fn corner(&self, face: FaceId, weights: [f64; 3], near: Point3) -> Result<Corner> {
+        let mut place = Place { position: near, ..self.input.surface.place(face, weights) };
+        if self.input.implicit.is_some() {
+            // Where f = 0 is not found the triangle is as good.
+            place = self.input.lift(&place, near).unwrap_or(place);
+        }
+        let tensor = self.metric.at(&place);
+        check_tensor3(tensor, || place.position.to_string())?;
+        Ok(Corner { weights, position: place.position, tensor })
+    }
+
+    /// Adds a piece to what was measured, by halves where it is longer than a limit, and as long as there are not so many.
+    fn measure(&self, piece: &Piece, limit: f64, most: usize, found: &mut Measured) -> Result<()> {
+        if piece.first_edge() <= limit || found.count >= most {
+            *found = Measured { count: found.count + 1, area: found.area + piece.area() };
+            return Ok(());
+        }
+        let Piece { face, corners: [a, b, c] } = *piece;
+        let weights = [0, 1, 2].map(|k| 0.5 * (a.weights[k] + b.weights[k]));
+        let middle = self.corner(face, weights, a.position.lerp(b.position, 0.5))?;
+        self.measure(&Piece::new(face, &[a, middle, c]), limit, most, found)?;
+        self.measure(&Piece::new(face, &[middle, b, c]), limit, most, found)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surface::metric::Constant;
+
+    #[test]
+    fn areas_are_those_of_closed_forms() {
+        let sphere = Input::shape("sphere:1", None).unwrap();
+        let area = |metric: &dyn SurfaceMetric| metric_area(&sphere, metric, 20_000).unwrap();
+        let exact = 4.0 * std::f64::consts::PI;
+        assert!((area(&Constant(Tensor3::IDENTITY * 9.0)) / (9.0 * exact) - 1.0).abs() < 1e-3);
+        // The integral of exp(a z) over the sphere is its area times sinh(a) / a.
+        let steep = |p: Point3| Tensor3::IDENTITY * (6.0 * p.z).exp();
+        assert!((area(&steep) / (exact * 6.0_f64.sinh() / 6.0) - 1.0).abs() < 2e-3);
+    }
+
+    #[test]
+    fn a_layer_inside_large_triangles_is_found() {
+        let cube = Input::new(crate::surface::Surface::new(&crate::test_cases::cube(1, 0.0)).unwrap(), None);
+        // The root of the determinant in a plane is that of the eigenvalue along x where x is in the plane.
+        let layer = |p: Point3| {
+            Tensor3::from_disk([1.0 + 400.0 * (-(p.x - 0.3).powi(2) / 0.005).exp(), 0.0, 1.0, 0.0, 0.0, 1.0])
+        };
+        let [coarse, fine] = [20_000, 160_000].map(|vertices| metric_area(&cube, &layer, vertices).unwrap());
+        assert!((coarse / fine - 1.0).abs() < 1e-3, "{coarse} {fine}");
+        assert!(fine > 6.0 + 4.0);
+    }
+}
