@@ -24,7 +24,6 @@ pub(super) const FOLDED: f64 = 1e-6;
 const FLAT: f64 = 1e-9;
 /// Slopes of the surface over a chord that tell its length; steeper ones count as this.
 const STEEP: f64 = 0.8;
-
 /// By a factor nearer to one than this, expansions of the metric hold for the unit after it as well.
 const ALIKE: f64 = 1.5;
 
@@ -169,6 +168,7 @@ impl<'a> SurfaceDual<'a> {
         self.seen(seed, place.position, self.input.normal(place))
     }
 
+    /// In the direction of the projection, as long as the way along the surface.
     fn seen(&self, from: VertexId, to: Point3, normal: Vector3) -> Vector {
         let (e, plane) = (to - self.position(from), &self.state.planes[from.index()]);
         ahead(plane.flatten(e), length_over(e, [plane.normal, normal]))

@@ -172,7 +172,7 @@ mod tests {
         let found = OnCanvas::new(&canvas).moments(&dual, |_, logarithm| logarithm).unwrap();
         let expected = Tangent.moments(&dual).unwrap();
         let mass = |all: &[(VertexId, Moments)]| all.iter().map(|(_, moments)| moments.mass).sum::<f64>();
-        let whole = 20.0 * crate::surface::metric::metric_area(&fine, &metric, 0).unwrap();
+        let whole = 20.0 * crate::surface::metric::area_of_surface(&fine, &metric, 0).unwrap();
         assert!((mass(&found) / whole - 1.0).abs() < 0.02, "{} {whole}", mass(&found));
         // Borders of cells are where canvas vertices are.
         let (mut of_mass, mut of_first, seeds) = (0.0, 0.0, found.len() as f64);

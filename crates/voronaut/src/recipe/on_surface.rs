@@ -12,7 +12,7 @@ use crate::optimise::{FitOptions, Patience, Polished, fit, polish_on_surface, po
 use crate::progress::Progress;
 use crate::quality::{self, Deviation, Meetings, Position, SurfaceFidelity, distances_around, interpolation_error_on};
 use crate::sampling::{MeasuredCurves, demand_memory};
-use crate::surface::metric::{Closer, Finer, SurfaceMetric, metric_area};
+use crate::surface::metric::{Closer, Finer, SurfaceMetric, area_of_surface};
 use crate::surface::{Component, Implicit, Input};
 
 /// Vertices of the triangles on which the surface is measured first.
@@ -375,7 +375,7 @@ impl<'a> Setting<'a> {
     /// A triangulation with V vertices has 2 (V - chi) - B faces, B of its edges on the border; each has the area sqrt(3) / 4.
     pub(super) fn plan(&self, known: Option<f64>) -> Result<SurfacePlan> {
         self.progress.begin("planning", 1)?;
-        let area = metric_area(self.input, self.metric, MEASURING)?;
+        let area = area_of_surface(self.input, self.metric, MEASURING)?;
         // Of the surface as it was before it was cut: vertices on its cuts count once.
         let chi = self.input.seams.whole().euler as f64;
         let extra = self.curves.extra();

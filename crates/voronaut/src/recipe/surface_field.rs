@@ -11,8 +11,8 @@ use crate::metric::nodal::Vertices;
 use crate::metric::{Bounds, swept};
 use crate::parallel::prelude::*;
 use crate::surface::metric::{
-    CovariantHessian, CurvatureFigures, Sampled, Spec, SurfaceMetric, TangentPlanes, field, field_of_values,
-    metric_area, recovered_on, within,
+    CovariantHessian, CurvatureFigures, Sampled, Spec, SurfaceMetric, TangentPlanes, area_of_surface, field,
+    field_of_values, recovered_on, within,
 };
 use crate::surface::{FeatureOptions, Input, Nearest, Place, Surface, closest_weights};
 use crate::triangulation::{FaceId, VertexId};
@@ -145,7 +145,7 @@ impl SurfaceMetric for Elsewhere {
 fn within_surface(field: Box<dyn SurfaceMetric>, input: &Input, at: GradedAt) -> Result<(Box<dyn SurfaceMetric>, f64)> {
     let scale = match at {
         GradedAt::Scale(scale) => scale,
-        GradedAt::Complexity(target) => target / metric_area(input, field.as_ref(), FEWEST)?,
+        GradedAt::Complexity(target) => target / area_of_surface(input, field.as_ref(), FEWEST)?,
     };
     let extent = input.surface.bounds().extent();
     let h_max = Some(LONGEST * extent.x.max(extent.y).max(extent.z) * scale.sqrt());
@@ -156,7 +156,7 @@ fn within_surface(field: Box<dyn SurfaceMetric>, input: &Input, at: GradedAt) ->
 fn count_for(field: &dyn SurfaceMetric, input: &Input, at: GradedAt) -> Result<usize> {
     let complexity = match at {
         GradedAt::Complexity(target) => target,
-        GradedAt::Scale(scale) => scale * metric_area(input, field, FEWEST)?,
+        GradedAt::Scale(scale) => scale * area_of_surface(input, field, FEWEST)?,
     };
     Ok(background_vertices(complexity, FEWEST))
 }

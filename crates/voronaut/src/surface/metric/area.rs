@@ -20,7 +20,7 @@ const HALVINGS: u32 = 64;
 ///
 /// # Errors
 /// [`Error::Metric`](crate::Error::Metric) where the metric is not positive definite at a corner.
-pub(crate) fn metric_area(input: &Input, metric: &dyn SurfaceMetric, vertices: usize) -> Result<f64> {
+pub(crate) fn area_of_surface(input: &Input, metric: &dyn SurfaceMetric, vertices: usize) -> Result<f64> {
     let (ground, wanted) = (Ground { input, metric }, 2 * vertices);
     let faces: Vec<FaceId> = input.surface.topology().faces().collect();
     let pieces: Result<Vec<Piece>> = faces.into_par_iter().with_min_len(64).map(|face| ground.piece(face)).collect();
@@ -135,7 +135,7 @@ mod tests {
     #[test]
     fn areas_are_those_of_closed_forms() {
         let sphere = Input::shape("sphere:1", None).unwrap();
-        let area = |metric: &dyn SurfaceMetric| metric_area(&sphere, metric, 20_000).unwrap();
+        let area = |metric: &dyn SurfaceMetric| area_of_surface(&sphere, metric, 20_000).unwrap();
         let exact = 4.0 * std::f64::consts::PI;
         assert!((area(&Constant(Tensor3::IDENTITY * 9.0)) / (9.0 * exact) - 1.0).abs() < 1e-3);
         // The integral of exp(a z) over the sphere is its area times sinh(a) / a.
@@ -152,7 +152,7 @@ mod tests {
         let steps = 10_000;
         let across: f64 = (0..steps).map(|i| along_x((f64::from(i) + 0.5) / f64::from(steps)).sqrt()).sum();
         let exact = 2.0 + 4.0 * across / f64::from(steps);
-        let off = |vertices: usize| (metric_area(&cube, &layer, vertices).unwrap() / exact - 1.0).abs();
+        let off = |vertices: usize| (area_of_surface(&cube, &layer, vertices).unwrap() / exact - 1.0).abs();
         assert!(off(20_000) < 3e-3 && off(160_000) < 6e-4, "{} {}", off(20_000), off(160_000));
     }
 }

@@ -30,7 +30,7 @@ mod sizing;
 mod spec;
 
 pub(crate) use crate::metric::check_tensor3;
-pub(crate) use area::metric_area;
+pub(crate) use area::area_of_surface;
 pub(crate) use bounded::Closer;
 pub(crate) use curvature::fit_curvatures;
 pub(crate) use curvature::{FLOOR, ImplicitCurvature, sampled_curvature};
