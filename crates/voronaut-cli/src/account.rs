@@ -6,9 +6,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 use voronaut::figures::NetFigures;
 use voronaut::mesh::Mesh;
 use voronaut::metric::MetricField;
-use voronaut::quality::{
-    Meetings, Unmet, Validity, metric_quality, surface_quality, surface_unmet, unmet, validity, validity_on,
-};
+use voronaut::quality::{Unmet, metric_quality, surface_quality, surface_unmet, unmet};
 use voronaut::recipe::Meshed;
 use voronaut::surface::metric::{Scaled, SurfaceMetric};
 use voronaut::surface::{Input, Mended, Surface};
@@ -26,18 +24,16 @@ pub(crate) fn ours(error: Error) -> Error {
     }
 }
 
-/// The report of a planar mesh, which has to be valid, in a metric; and its edges that are not of unit length.
+/// The report of a planar mesh, in a metric; and its edges that are not of unit length.
 pub(crate) fn in_plane(meshed: &Meshed, metric: &dyn MetricField, options: Value) -> Result<(Report, Unmet)> {
     let mesh = &meshed.mesh;
-    let (found, unmet) = rayon::join(|| validity(mesh), || unmet(mesh, metric, |_| ()));
-    found.demand().map_err(ours)?;
-    let (mut report, unmet) = (report(meshed, found, options), unmet?);
+    let (mut report, unmet) = (report(meshed, options), unmet(mesh, metric, |_| ())?);
     add_in_plane(&mut report, mesh, metric, &unmet)?;
     report.closed_form = closed_form(meshed, &unmet);
     Ok((report, unmet))
 }
 
-/// The report of the mesh of a surface, which has to be valid, in a metric that is still to be scaled; and its edges that are
+/// The report of the mesh of a surface, in a metric that is still to be scaled; and its edges that are
 /// not of unit length.
 pub(crate) fn on_surface(
     meshed: &Meshed,
@@ -46,11 +42,9 @@ pub(crate) fn on_surface(
     metric: &dyn SurfaceMetric,
     options: Value,
 ) -> Result<(Report, Unmet)> {
-    let found = validity_on(&meshed.mesh, &Meetings::of(input.whole_mesh()));
-    found.demand().map_err(ours)?;
-    let meets = found.meetings.note();
+    let meets = meshed.validity.meetings.note();
     let scaled = Scaled { field: metric, factor: meshed.metric_scale };
-    let mut report = report(meshed, found, options);
+    let mut report = report(meshed, options);
     let unmet = measure_on_surface(&mut report, &meshed.mesh, &input.surface, &scaled)?;
     report.closed_form = closed_form(meshed, &unmet);
     report.notes.extend(mended.sentences().chain(meets));
@@ -102,7 +96,7 @@ pub(crate) fn measure_on_surface(
 }
 
 /// The parts that are the same for plane and surface, and the options as used.
-fn report(meshed: &Meshed, found: Validity, options: Value) -> Report {
+fn report(meshed: &Meshed, options: Value) -> Report {
     let is_voronoi = meshed.star_set.is_none();
     let mut report = Report {
         star_set: meshed.star_set,
@@ -117,7 +111,7 @@ fn report(meshed: &Meshed, found: Validity, options: Value) -> Report {
         notes: meshed.notes.clone(),
         seconds: Seconds { stages: meshed.seconds.clone(), total: 0.0 },
         options,
-        ..Report::new(&meshed.mesh, found)
+        ..Report::new(&meshed.mesh, meshed.validity.clone())
     };
     curves::report(&mut report, &meshed.mesh);
     report

@@ -18,6 +18,15 @@ pub(crate) fn ranked<T: Ord>(items: impl IntoIterator<Item = (f64, T)>) -> Vec<(
     list
 }
 
+/// The first of these, at most so many, as [`ranked`] has them.
+pub(crate) fn least_ranked<T: Ord>(mut items: Vec<(f64, T)>, most: usize) -> Vec<(f64, T)> {
+    if most < items.len() {
+        items.select_nth_unstable_by(most, |a, b| a.0.total_cmp(&b.0).then_with(|| a.1.cmp(&b.1)));
+        items.truncate(most);
+    }
+    ranked(items)
+}
+
 /// A few things, the smallest first.
 pub(crate) fn in_order<T: Ord, const N: usize>(mut items: [T; N]) -> [T; N] {
     items.sort_unstable();

@@ -1,7 +1,6 @@
 //! What files are written by: one number after the other, as words or as bytes.
 
 use super::kinds::{Form, Kind};
-use std::convert::identity;
 use std::fmt;
 use std::io::{self, Write};
 
@@ -29,7 +28,7 @@ pub(crate) trait Number: Copy {
 pub(crate) struct Shortest(pub(crate) f64);
 
 macro_rules! numbers {
-    ($($number:ty, $kind:expr, $word:path;)*) => {$(
+    ($($number:ty, $kind:expr, $put_word:path;)*) => {$(
         impl Number for $number {
             const KIND: Kind = $kind;
 
@@ -38,20 +37,32 @@ macro_rules! numbers {
             }
 
             fn put_word(self, to: &mut Vec<u8>) {
-                write!(to, "{}", $word(self)).expect("memory takes all");
+                $put_word(self, to);
             }
         }
     )*};
 }
 
 numbers! {
-    u8, Kind::Unsigned(1), identity;
-    i32, Kind::Signed(4), identity;
-    u32, Kind::Unsigned(4), identity;
-    i64, Kind::Signed(8), identity;
-    u64, Kind::Unsigned(8), identity;
-    f32, Kind::Float(4), identity;
-    f64, Kind::Float(8), Shortest;
+    u8, Kind::Unsigned(1), put_whole;
+    i32, Kind::Signed(4), put_whole;
+    u32, Kind::Unsigned(4), put_whole;
+    i64, Kind::Signed(8), put_whole;
+    u64, Kind::Unsigned(8), put_whole;
+    f32, Kind::Float(4), put_shown;
+    f64, Kind::Float(8), put_real;
+}
+
+fn put_whole(number: impl itoa::Integer, to: &mut Vec<u8>) {
+    to.extend_from_slice(itoa::Buffer::new().format(number).as_bytes());
+}
+
+fn put_real(number: f64, to: &mut Vec<u8>) {
+    put_shown(Shortest(number), to);
+}
+
+fn put_shown(number: impl fmt::Display, to: &mut Vec<u8>) {
+    write!(to, "{number}").expect("memory takes all");
 }
 
 impl<'a> Sink<'a> {

@@ -21,10 +21,10 @@ impl Dual<'_> {
                 (LocalMetric::at_near(&field, p, near), kind)
             }
         };
-        let seeds: Vec<(LocalMetric, Kind)> =
-            origins.par_iter().zip(&planar.positions).with_min_len(256).map(seed).collect();
-        (self.locals, self.kinds) = seeds.into_iter().unzip();
-        for v in 0..self.locals.len() {
+        (self.locals, self.kinds) = origins.par_iter().zip(&planar.positions).with_min_len(256).map(seed).unzip();
+        let is_bad = |v: &usize| !self.locals[*v].tensor.is_positive_definite();
+        let bad: Vec<usize> = (0..self.locals.len()).into_par_iter().with_min_len(1024).filter(is_bad).collect();
+        for v in bad {
             self.locals[v] = self.vetted(planar.positions[v], self.locals[v]);
         }
         self.planar = planar;

@@ -6,7 +6,7 @@ use crate::geodesic::{
     Fineness, Length, Margin, PathLength, bent_chord, bowed_chord, chord, frozen_margin, hermite, margin_of_estimates,
 };
 use crate::geometry::Tensor;
-use crate::in_circle::{InCircle, Known, Lengths, Quad, Tested, climb};
+use crate::in_circle::{InCircle, Known, Lengths, Quad, Tested, climb, is_settled};
 use crate::lists::in_order;
 use crate::parallel::prelude::*;
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
@@ -44,8 +44,12 @@ impl Dual<'_> {
     pub(crate) fn margin(&mut self, h: HalfEdge, effort: Effort) -> Margin {
         let quad = self.quad(h);
         if effort == Effort::Full {
-            let known = self.tests.known(&quad, LEVELS - 1);
-            return known.unwrap_or_else(|| self.test(&[quad])[0]).margin;
+            let h = self.topology().canonical(h);
+            return self.margins.get(h, &quad).unwrap_or_else(|| {
+                let margin = self.test(&[quad])[0].margin;
+                self.margins.put(h, &quad, margin);
+                margin
+            });
         }
         let Tested { margin, level } = self.climbed(&quad, effort);
         self.counters.tests[level] += 1;
@@ -92,8 +96,32 @@ impl Dual<'_> {
     /// Computes the margins of all edges with all levels, in parallel.
     pub(super) fn measure_margins(&mut self) {
         let edges: Vec<HalfEdge> = self.free_edges().collect();
-        let quads: Vec<Quad> = edges.into_par_iter().with_min_len(1024).map(|h| self.quad(h)).collect();
-        self.test(&quads);
+        let by = ByEffort { dual: self, effort: Effort::Full };
+        let cheap = |&h: &HalfEdge| {
+            let quad = self.quad(h);
+            let is_new = self.margins.get(h, &quad).is_none();
+            is_new.then(|| (h, quad, climb(&by, &quad, 0..FIRST_PATH, &self.tests.lengths, None)))
+        };
+        let climbed: Vec<(HalfEdge, Quad, Option<Tested>)> =
+            edges.par_iter().with_min_len(256).filter_map(cheap).collect();
+        let (mut open, mut dear) = (Vec::new(), Vec::new());
+        self.margins.make_room(3 * self.topology().face_slots());
+        for (h, quad, tested) in climbed {
+            match tested.filter(|_| is_settled(tested)) {
+                Some(Tested { margin, level }) => {
+                    self.counters.tests[level] += 1;
+                    self.margins.put(h, &quad, margin);
+                }
+                None => {
+                    open.push(h);
+                    dear.push(quad);
+                }
+            }
+        }
+        let found = self.test(&dear);
+        for ((h, quad), tested) in open.into_iter().zip(&dear).zip(found) {
+            self.margins.put(h, quad, tested.margin);
+        }
     }
 
     /// The edges whose margins by all levels want them flipped.
@@ -107,10 +135,12 @@ impl Dual<'_> {
     /// Goes through the margins of edges: what is known of them is looked up in parallel, the others are tested one after the other.
     pub(super) fn each_margin(&mut self, edges: &[HalfEdge], effort: Effort, mut then: impl FnMut(HalfEdge, Margin)) {
         for edges in edges.chunks(LOOKED_UP) {
-            let known = |&h: &HalfEdge| self.tests.known(&self.quad(h), LEVELS - 1).filter(|_| effort == Effort::Full);
-            let known: Vec<Option<Tested>> = edges.par_iter().with_min_len(1024).map(known).collect();
+            let known = |&h: &HalfEdge| {
+                self.margins.get(self.topology().canonical(h), &self.quad(h)).filter(|_| effort == Effort::Full)
+            };
+            let known: Vec<Option<Margin>> = edges.par_iter().with_min_len(1024).map(known).collect();
             for (&h, known) in edges.iter().zip(known) {
-                then(h, known.map_or_else(|| self.margin(h, effort), |known| known.margin));
+                then(h, known.unwrap_or_else(|| self.margin(h, effort)));
             }
         }
     }
@@ -127,6 +157,28 @@ impl Dual<'_> {
 
     pub(super) fn quad(&self, h: HalfEdge) -> Quad {
         Quad::around(self.topology(), h).expect("an edge with two faces")
+    }
+}
+
+/// Margins by all levels, by the canonical half-edge of each edge, with the quadrilaterals that they are of: flips leave others.
+#[derive(Default)]
+pub(super) struct Margins(Vec<([u32; 4], Margin)>);
+
+impl Margins {
+    fn get(&self, h: HalfEdge, quad: &Quad) -> Option<Margin> {
+        self.0.get(h.index()).filter(|(key, _)| *key == quad.key()).map(|&(_, margin)| margin)
+    }
+
+    fn make_room(&mut self, slots: usize) {
+        if self.0.len() < slots {
+            self.0.reserve_exact(slots - self.0.len());
+            self.0.resize(slots, ([u32::MAX; 4], Margin::UNKNOWN));
+        }
+    }
+
+    fn put(&mut self, h: HalfEdge, quad: &Quad, margin: Margin) {
+        self.make_room(h.index() + 1);
+        self.0[h.index()] = (quad.key(), margin);
     }
 }
 

@@ -28,7 +28,7 @@ use crate::metric::Scaled;
 use crate::parallel::prelude::*;
 use crate::planar::{Location, Planar};
 use crate::triangulation::{FaceId, HalfEdge, Lawson, Limit, VertexId};
-use margin::LEVELS;
+use margin::{LEVELS, Margins};
 use std::collections::HashSet;
 
 /// What holds a vertex in its place.
@@ -85,6 +85,8 @@ pub struct Dual<'a> {
     lawson: Lawson,
     /// What is known of edges, until a seed moves, comes or goes.
     tests: Tests,
+    /// Their margins by all levels, until then.
+    margins: Margins,
     /// Edges that are not to be flipped, until then.
     held: HashSet<[VertexId; 2]>,
     paths: Paths,
@@ -109,6 +111,7 @@ impl<'a> Dual<'a> {
             touched: Vec::new(),
             lawson: Lawson::default(),
             tests: Tests::default(),
+            margins: Margins::default(),
             held: HashSet::new(),
             paths: Paths::default(),
             counters: DualCounters::default(),
@@ -182,6 +185,12 @@ impl<'a> Dual<'a> {
         std::mem::take(&mut self.touched)
     }
 
+    /// The same, into this list.
+    pub(crate) fn take_touched_into(&mut self, list: &mut Vec<FaceId>) {
+        list.clear();
+        std::mem::swap(list, &mut self.touched);
+    }
+
     /// Whether the metric was found valid wherever it was evaluated so far.
     ///
     /// # Errors
@@ -196,7 +205,7 @@ impl<'a> Dual<'a> {
     /// Numbers vertices and faces along a Hilbert curve; ids change. Passes over all seeds are then fast for any size.
     pub(crate) fn reorder(&mut self) {
         let (planar, old) = self.planar.reordered();
-        self.locals = old.iter().map(|&v| self.locals[v.index()]).collect();
+        self.locals = old.par_iter().with_min_len(1024).map(|&v| self.locals[v.index()]).collect();
         self.kinds = old.iter().map(|&v| self.kinds[v.index()]).collect();
         self.planar = planar;
         self.touched.clear();
@@ -206,6 +215,7 @@ impl<'a> Dual<'a> {
     /// Forgets what is known of edges.
     fn forget(&mut self) {
         self.tests = Tests::default();
+        self.margins = Margins::default();
         self.held.clear();
     }
 

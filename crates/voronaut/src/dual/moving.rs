@@ -93,6 +93,7 @@ pub(crate) fn sites<M: Moving>(dual: &M) -> Vec<M::Site> {
 }
 
 /// Seeds, edges and the metric at the seeds, with its factor.
+#[derive(Default)]
 pub(crate) struct Saved {
     planar: Planar,
     locals: Vec<LocalMetric>,
@@ -194,12 +195,9 @@ impl Moving for Dual<'_> {
     }
 
     fn save(&self) -> Saved {
-        Saved {
-            planar: self.planar.clone(),
-            locals: self.locals.clone(),
-            kinds: self.kinds.clone(),
-            factor: self.field.factor,
-        }
+        let mut saved = Saved::default();
+        self.save_over(&mut saved);
+        saved
     }
 
     fn save_over(&self, saved: &mut Saved) {

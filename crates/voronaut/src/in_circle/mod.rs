@@ -57,7 +57,7 @@ impl Quad {
     }
 
     /// The same for the edge in both directions.
-    fn key(&self) -> [u32; 4] {
+    pub(crate) fn key(&self) -> [u32; 4] {
         let [a, b, c, d] = self.seeds();
         if a < b { [a, b, c, d] } else { [b, a, d, c] }
     }
@@ -126,7 +126,8 @@ pub(crate) fn climb(
     known
 }
 
-fn is_settled(known: Option<Tested>) -> bool {
+/// Whether no other level has to be asked.
+pub(crate) fn is_settled(known: Option<Tested>) -> bool {
     known.is_some_and(|known| known.margin.is_certain() || known.margin.error < RESOLUTION)
 }
 

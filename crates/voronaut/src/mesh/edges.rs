@@ -91,13 +91,27 @@ impl<'a> Edges<'a> {
         let mut twins = vec![NONE; self.half_edges.len()];
         for same in self.groups() {
             if let [s, t] = *same
-                && is_manifold(&self.sides(same))
+                && self.are_opposite(s, t)
             {
                 twins[s as usize] = t;
                 twins[t as usize] = s;
             }
         }
         twins
+    }
+
+    /// The sides of each edge that has not one triangle, or two that traverse it in opposite directions; in order.
+    pub(crate) fn not_manifold(&self) -> impl Iterator<Item = Sides> {
+        let is_wrong = |same: &&[u32]| match **same {
+            [_] => false,
+            [s, t] => !self.are_opposite(s, t),
+            _ => true,
+        };
+        self.groups().filter(is_wrong).map(|same| self.sides(same))
+    }
+
+    fn are_opposite(&self, s: u32, t: u32) -> bool {
+        directed(&self.triangles, s)[0] != directed(&self.triangles, t)[0]
     }
 
     /// The half-edges of each edge.
@@ -124,15 +138,6 @@ fn directed(triangles: &[[u32; 3]], half_edge: u32) -> [u32; 2] {
 /// The same, the smaller first.
 fn ends_of(triangles: &[[u32; 3]], half_edge: u32) -> [u32; 2] {
     in_order(directed(triangles, half_edge))
-}
-
-/// Whether an edge has one or two triangles, and two traverse it in opposite directions.
-pub(crate) fn is_manifold(sides: &[EdgeSide]) -> bool {
-    match sides {
-        [_] => true,
-        [s, t] => s.forward != t.forward,
-        _ => false,
-    }
 }
 
 /// The edges of a triangle, in its direction.

@@ -5,7 +5,7 @@ use crate::dual::{Dual, Effort, Kind, Moving, sites};
 use crate::elementary::Elementary;
 use crate::error::Result;
 use crate::geometry::{NEEDLE, Vector, from_frame};
-use crate::lists::ranked;
+use crate::lists::{least_ranked, ranked};
 use crate::parallel::prelude::*;
 use crate::planar::Location;
 use crate::progress::Silent;
@@ -115,15 +115,16 @@ impl<M: Moving> Default for Mending<M> {
 impl<M: Moving> Mending<M> {
     /// Moves the free corners of the poorest triangles, at most so many. Returns how many seeds moved.
     pub(crate) fn worst(&mut self, dual: &mut M, most: usize) -> usize {
-        let poorest: Vec<[VertexId; 3]> = by_quality(dual).into_iter().take(most).map(|(_, corners)| corners).collect();
+        let poorest = least_ranked(by_quality(dual), most).into_iter().map(|(_, corners)| corners);
+        let poorest: Vec<[VertexId; 3]> = poorest.collect();
         self.corners(dual, poorest, Lengths::Kept)
     }
 
     /// The same of all triangles that are needles, or nearly, whatever lengths become: what the mesh is measured by asks for the metric at the closest
     /// places, and may find less.
     pub(crate) fn needles(&mut self, dual: &mut M) -> usize {
-        let poor = by_quality(dual).into_iter().take_while(|(quality, _)| *quality < POOR).map(|(_, corners)| corners);
-        let poor: Vec<[VertexId; 3]> = poor.collect();
+        let poor = ranked(by_quality(dual).into_iter().filter(|(quality, _)| *quality < POOR));
+        let poor: Vec<[VertexId; 3]> = poor.into_iter().map(|(_, corners)| corners).collect();
         self.corners(dual, poor, Lengths::AfterNeedles)
     }
 
@@ -149,15 +150,15 @@ impl<M: Moving> Mending<M> {
     }
 }
 
-/// The triangles by their quality, the poorest first.
+/// The triangles by their quality.
 fn by_quality(dual: &impl Moving) -> Vec<(f64, [VertexId; 3])> {
     let sites = sites(dual);
     let corners: Vec<_> = dual.topology().faces().map(|face| dual.topology().corners(face)).collect();
-    let measured = corners.par_iter().with_min_len(1024).map(|&corners| {
+    let measured = |&corners: &[VertexId; 3]| {
         let quality = dual.quality(corners.map(|v| sites[v.index()]));
         (quality, corners)
-    });
-    ranked(measured.collect::<Vec<_>>())
+    };
+    corners.par_iter().with_min_len(1024).map(measured).collect()
 }
 
 /// What counts where a triangle is a needle.

@@ -28,8 +28,7 @@ pub(crate) fn copy_over<T: Copy + Send + Sync>(to: &mut Vec<T>, from: &[T]) {
     if to.len() == from.len() {
         to.par_chunks_mut(COPIED).zip(from.par_chunks(COPIED)).for_each(|(to, from)| to.copy_from_slice(from));
     } else {
-        to.clear();
-        to.extend_from_slice(from);
+        *to = from.par_iter().with_min_len(COPIED).copied().collect();
     }
 }
 

@@ -9,7 +9,7 @@ impl Planar {
     /// The vertices along a Hilbert curve.
     pub(crate) fn along_curve(&self) -> Vec<VertexId> {
         let living: Vec<VertexId> = self.topology.vertices().collect();
-        let points: Vec<Point> = living.iter().map(|&v| self.position(v)).collect();
+        let points: Vec<Point> = living.par_iter().with_min_len(1024).map(|&v| self.position(v)).collect();
         hilbert_order(&points).into_iter().map(|i| living[i as usize]).collect()
     }
 
@@ -18,7 +18,7 @@ impl Planar {
     pub(crate) fn reordered(&self) -> (Planar, Vec<VertexId>) {
         let old = self.along_curve();
         let topology = self.topology.renumbered_by_corners(&old);
-        let positions = old.iter().map(|&v| self.position(v)).collect();
+        let positions = old.par_iter().with_min_len(1024).map(|&v| self.position(v)).collect();
         (Planar { topology, positions }, old)
     }
 

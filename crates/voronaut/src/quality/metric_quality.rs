@@ -165,7 +165,8 @@ pub(super) fn figures(
     let shapes = Shapes::of(mesh, shape, &position, |_, _| ())?;
     let edges = Edges::of(&mesh.triangles);
     let lengths = of_edges(&edges, length)?;
-    summed(mesh, &edges, &lengths, &shapes, position)
+    let ends: Vec<[u32; 2]> = edges.ends().collect();
+    summed(mesh, &edges, &ends, &lengths, &shapes, position)
         .ok_or_else(|| fault("there are no triangles", "the array of triangles"))
 }
 
@@ -210,18 +211,19 @@ impl Shapes {
     }
 }
 
-/// The figures of a mesh from its edges with their metric lengths, and those of its triangles; none without triangles.
+/// The figures of a mesh from its edges with their ends and metric lengths, and those of its triangles; none without triangles.
 pub(super) fn summed(
     mesh: &Mesh,
     edges: &Edges,
+    ends: &[[u32; 2]],
     lengths: &[f64],
     shapes: &Shapes,
     position: impl Fn(Point3) -> Position,
 ) -> Option<MetricQuality> {
     let on_boundary = marked(mesh.points.len(), edges.boundary().flat_map(|side| side.ends));
     let is_interior = |ends: &[u32; 2]| ends.iter().all(|&v| !on_boundary[v as usize]);
-    let interior = || edges.ends().zip(lengths).filter(|(ends, _)| is_interior(ends)).map(|(_, &length)| length);
-    let of_edge = |e: usize| position(edges.ends().nth(e).map_or_else(Point3::default, |ends| middle(mesh, &ends)));
+    let interior = || ends.iter().zip(lengths).filter(|(ends, _)| is_interior(ends)).map(|(_, &length)| length);
+    let of_edge = |e: usize| position(middle(mesh, &ends[e]));
     Some(MetricQuality {
         metric_edge_length: EdgeLengths::of(|| lengths.iter().copied())?,
         interior_edge_length: EdgeLengths::of(interior),

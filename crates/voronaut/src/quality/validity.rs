@@ -9,7 +9,7 @@ use super::self_intersections::{Pair, pairs};
 use crate::error::{Error, Result};
 use crate::geometry::{Orientation, Point, Point3, is_flat, orientation};
 use crate::lists::distinct;
-use crate::mesh::edges::{self, NONE, is_manifold};
+use crate::mesh::edges::{self, NONE};
 use crate::mesh::{Edges, Mesh};
 use crate::parallel::{join, prelude::*};
 
@@ -253,15 +253,17 @@ impl Validity {
 
     fn examine_edges(&mut self, mesh: &Mesh, edges: &Edges) {
         let used = mesh.points.len() - self.unused_vertices;
-        self.euler = used.cast_signed() - edges.iter().count().cast_signed() + mesh.triangles.len().cast_signed();
-        for sides in edges.iter().filter(|sides| !is_manifold(sides)) {
+        let count = || (edges.ends().count(), edges.not_manifold().collect::<Vec<_>>());
+        let ((count, wrong), loops) = join(count, || boundary_loops(edges));
+        (self.euler, self.boundary_loops) =
+            (used.cast_signed() - count.cast_signed() + mesh.triangles.len().cast_signed(), loops);
+        for sides in wrong {
             self.non_manifold_edges += 1;
             let ([a, b], count) = (sides[0].ends, sides.len());
             let what =
                 format!("edge {} {} is not manifold: {count} triangles, or the same direction twice", a + 1, b + 1);
             self.fault_at(what, mesh, &[a, b]);
         }
-        self.boundary_loops = boundary_loops(edges);
         for (number, &[a, b]) in (1..).zip(&mesh.edges).filter(|(_, [a, b])| edges.at([*a, *b]).is_empty()) {
             self.stray_edges += 1;
             let what = format!("labelled edge {number} (vertices {} {}) is no edge of a triangle", a + 1, b + 1);
@@ -308,8 +310,7 @@ pub(crate) fn faulty_triangles(mesh: &Mesh, surface: &Meetings) -> Vec<u32> {
             .extend(pairs(mesh).iter().filter(|pair| of_ours(pair)).flat_map(|pair| pair.triangles).map(|t| t as u32));
     }
     let edges = Edges::of(&mesh.triangles);
-    let wrong = edges.iter().filter(|sides| !is_manifold(sides)).flatten();
-    faulty.extend(wrong.map(|side| side.triangle() as u32));
+    faulty.extend(edges.not_manifold().flatten().map(|side| side.triangle() as u32));
     let split = split_vertices(mesh, &edges);
     let has_split = |t: &[u32; 3]| t.iter().any(|v| split.binary_search(v).is_ok());
     faulty.extend((0..).zip(&mesh.triangles).filter(|(_, t)| has_split(t)).map(|(i, _)| i));

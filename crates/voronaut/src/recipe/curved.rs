@@ -10,7 +10,7 @@ use crate::mesh::Mesh;
 use crate::metric::{MetricField, Scaled, complexity};
 use crate::optimise::{Patience, polishing_norm};
 use crate::progress::Progress;
-use crate::quality::{self, Meetings};
+use crate::quality::{self, Meetings, Validity};
 use crate::surface::Input;
 
 /// Half the square root of 3: the metric area that a unit mesh has for each vertex, two equilateral triangles.
@@ -101,24 +101,24 @@ fn mesh_by_metric(
 
 /// The curved mesh, checked, in place of the straight one that it started from; with a note of points that are away from their curves.
 fn finished(start: Meshed, mesh: Mesh, away: Away, watch: &Stopwatch, is_bent: bool) -> Result<Meshed> {
-    watch.time("check", || demand_valid(&mesh, is_bent))?;
+    let validity = watch.time("check", || demand_valid(&mesh, is_bent))?;
     let note = |(count, at): (usize, Point)| {
         format!("{count} points of the boundary are not on its curve, for triangles would fold: the first at {at}")
     };
     let notes = start.notes.iter().cloned().chain(away.map(note)).collect();
-    Ok(Meshed { mesh, seconds: [start.seconds.clone(), watch.seconds()].concat(), notes, ..start })
+    Ok(Meshed { mesh, validity, seconds: [start.seconds.clone(), watch.seconds()].concat(), notes, ..start })
 }
 
 /// # Errors
 /// [`Error::Domain`] where curves of a boundary that was bent meet, which their chords do not; else as [`quality::check`].
-fn demand_valid(mesh: &Mesh, is_bent: bool) -> Result<()> {
+fn demand_valid(mesh: &Mesh, is_bent: bool) -> Result<Validity> {
     let found = quality::validity(mesh);
     match &found.first_fault {
         Some(fault) if is_bent && found.overlaps > 0 => {
             let help = "use `boundary=polyline`, or give the curves more vertices there";
             Err(Error::domain(format!("curves of the boundary meet: {}", fault.what), fault.place.clone(), help))
         }
-        _ => found.demand(),
+        _ => found.demand().map(|()| found),
     }
 }
 
@@ -150,7 +150,8 @@ pub(super) fn curve_onto(meshed: &mut Meshed, input: &Input, meetings: &Meetings
             "{count} nodes are not on the surface, for triangles would fold or it was not found: the first is near {at}"
         ));
     }
-    quality::validity_on(&meshed.mesh, meetings).demand()
+    meshed.validity = quality::validity_on(&meshed.mesh, meetings);
+    meshed.validity.demand()
 }
 
 /// Whether boundaries are bent onto curves. That a domain allows chords to stray says that its segments stand for a curve.

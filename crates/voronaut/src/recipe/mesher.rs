@@ -92,9 +92,11 @@ fn agreed(job: &mut Job, start: &Start, scaled: &Scaled, unit: usize) -> Result<
     let found = job.watch.time("stars", || consistent(start.dual.planar().clone(), scaled, asked))?;
     job.progress.begin("checking", 1)?;
     let mesh = start.domain.mesh_of(&found.planar, |v| corner(&start.dual, v));
-    job.watch.time("check", || quality::check(&mesh))?;
+    let validity = job.watch.time("check", || quality::validity(&mesh));
+    validity.demand()?;
     Ok(Meshed {
         mesh,
+        validity,
         metric_scale: scaled.factor,
         relaxation: start.relaxation.clone(),
         star_set: Some(figures::StarSet { figures: found.figures, counters: found.counters }),

@@ -50,7 +50,7 @@ use crate::net::Net;
 use crate::optimise::{Patience, Polished, Relaxed, polish};
 use crate::parallel::prelude::*;
 use crate::progress::Progress;
-use crate::quality::{self, SurfaceFidelity};
+use crate::quality::{self, SurfaceFidelity, Validity};
 use crate::sampling::{Fill, Picking, Plan, Target, demand_memory, refine, refine_protected, simplify};
 use crate::surface::Place;
 use crate::triangulation::HalfEdge;
@@ -67,6 +67,8 @@ const NOT_KNOWN: &str = "the solution's own mesh is too coarse to polish this on
 pub struct Meshed {
     /// A valid mesh.
     pub mesh: Mesh,
+    /// What was found when it was examined: no fault.
+    pub validity: Validity,
     /// The factor on the metric tensor for which the mesh is a unit mesh (1 where the metric was used as it is).
     pub metric_scale: f64,
     /// The factor that the number of vertices asks for in closed form: [`COMPLEXITY_PER_VERTEX`] for each over the metric's complexity (to
@@ -185,10 +187,11 @@ fn mesh_straight(
         settle::Settled::default()
     };
     let polished = aim.map(|aim| watch.time("polish", || job.polish(&mut dual, aim))).transpose()?;
-    let mesh = watch.time("check", || job.finish(&domain, &dual, &plan.pairs))?;
+    let (mesh, validity) = watch.time("check", || job.finish(&domain, &dual, &plan.pairs))?;
     let (net, protection) = job.net(&domain, &dual, protected);
     Ok(Meshed {
         mesh,
+        validity,
         metric_scale: dual.field().factor,
         closed_form_scale: options.vertices.map(|count| closed_form_scale(count, plan.complexity)),
         dual: settled.dual,
@@ -390,13 +393,14 @@ impl<'a> Job<'a> {
         polish(dual, aim.function, aim.norm, patience, self.progress)
     }
 
-    fn finish(&self, domain: &Domain, dual: &Dual, pairs: &[Pair]) -> Result<Mesh> {
+    fn finish(&self, domain: &Domain, dual: &Dual, pairs: &[Pair]) -> Result<(Mesh, Validity)> {
         self.progress.begin("checking", 1)?;
         self.progress.sketch(&|| dual.sketch());
         let mut mesh = dual.to_mesh(domain);
         mesh.periodic = correspondence(&mesh, domain, pairs)?;
-        quality::check(&mesh)?;
-        Ok(mesh)
+        let validity = quality::validity(&mesh);
+        validity.demand()?;
+        Ok((mesh, validity))
     }
 }
 

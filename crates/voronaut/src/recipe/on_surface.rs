@@ -10,7 +10,9 @@ use crate::mesh::Mesh;
 use crate::metric::{Expression, Norm};
 use crate::optimise::{FitOptions, Patience, Polished, fit, polish_on_surface, polishing_norm};
 use crate::progress::Progress;
-use crate::quality::{self, Deviation, Meetings, Position, SurfaceFidelity, distances_around, interpolation_error_on};
+use crate::quality::{
+    self, Deviation, Meetings, Position, SurfaceFidelity, Validity, distances_around, interpolation_error_on,
+};
 use crate::sampling::{MeasuredCurves, demand_memory};
 use crate::surface::metric::{Closer, Finer, SurfaceMetric, area_of_surface};
 use crate::surface::{Component, Implicit, Input};
@@ -201,7 +203,7 @@ impl<'a> Setting<'a> {
             0 => self.protect(&mut pass, &mut mesh, &mut notes)?,
             _ => None,
         };
-        demand(self.input, &mesh, self.meetings)?;
+        let validity = demand(self.input, &mesh, self.meetings)?;
         let (surface_net, protection) = match protected {
             Some((net, protection)) => (Some(net), Some(protection)),
             None => (self.options.net.then(|| self.net(&pass)), None),
@@ -213,10 +215,11 @@ impl<'a> Setting<'a> {
         notes.extend(reseed.note());
         notes.extend(pass.notes());
         notes.extend(self.count_note(&pass, mesh.points.len()));
-        let mesh = self.watch.time("fit", || self.fitted(mesh, &mut notes))?;
+        let (mesh, validity) = self.watch.time("fit", || self.fitted(mesh, validity, &mut notes))?;
         let fidelity = self.watch.time("check", || self.fidelity(&mesh))?;
         let meshed = Meshed {
             mesh,
+            validity,
             metric_scale: pass.dual.factor(),
             dual: pass.settled.dual,
             relaxation: pass.relaxed,
@@ -346,20 +349,21 @@ impl<'a> Setting<'a> {
     }
 
     /// The mesh with its vertices at least-squares positions, if that is asked for; as it was where that would not be valid.
-    fn fitted(&self, mesh: Mesh, notes: &mut Vec<String>) -> Result<Mesh> {
+    fn fitted(&self, mesh: Mesh, validity: Validity, notes: &mut Vec<String>) -> Result<(Mesh, Validity)> {
         if !self.options.fit {
-            return Ok(mesh);
+            return Ok((mesh, validity));
         }
         self.progress.begin("fitting", 1)?;
         let options = FitOptions { stiffness: self.options.stiffness, ..FitOptions::default() };
         let input = self.input;
         let fine = input.implicit.as_ref().map(|_| self.fine_surface(mesh.points.len())).transpose()?;
         let fitted = fit(&mesh, fine.as_ref().unwrap_or(&input.surface), &options)?.mesh;
-        if quality::validity_on(&fitted, self.meetings).valid {
-            return Ok(fitted);
+        let found = quality::validity_on(&fitted, self.meetings);
+        if found.valid {
+            return Ok((fitted, found));
         }
         notes.push("vertices are on the surface: least-squares positions would not make a valid mesh".into());
-        Ok(mesh)
+        Ok((mesh, validity))
     }
 
     fn fidelity(&self, mesh: &Mesh) -> Result<Option<SurfaceFidelity>> {

@@ -15,7 +15,7 @@ use crate::mesh::Mesh;
 use crate::metric::{Expression, Norm};
 use crate::optimise::{Mending, Patience, Relaxed, relax};
 use crate::progress::Progress;
-use crate::quality::{self, Meetings};
+use crate::quality::{self, Meetings, Validity};
 use crate::rdt::{OnSurface, Rdt, Start};
 use crate::sampling::{
     ALL_VERTICES, Adapted, FeatureSeeds, Held, Holding, MeasuredCurves, Wanted, adapted, contracted, exchanged,
@@ -377,16 +377,16 @@ impl Pass<'_> {
     }
 }
 
-/// Nothing of a valid mesh of the surface's topology with all that is required.
+/// What is found of a valid mesh of the surface's topology with all that is required.
 ///
 /// # Errors
 /// [`Error::Mesh`] with the first fault.
-pub(super) fn demand(input: &Input, mesh: &Mesh, meetings: &Meetings) -> Result<()> {
+pub(super) fn demand(input: &Input, mesh: &Mesh, meetings: &Meetings) -> Result<Validity> {
     let help = "ask for more vertices (`vertices`); please report this with the input";
     let fault = |what: &str, place: String| Err(Error::mesh(what, place, help));
     let found = quality::validity_on(mesh, meetings);
-    if let Some(found) = found.first_fault {
-        return fault(&found.what, found.place);
+    if let Some(found) = &found.first_fault {
+        return fault(&found.what, found.place.clone());
     }
     let Whole { euler, borders } = input.seams.whole();
     if (found.euler, found.boundary_loops) != (euler, borders) {
@@ -399,7 +399,7 @@ pub(super) fn demand(input: &Input, mesh: &Mesh, meetings: &Meetings) -> Result<
     if mesh.required_triangles.len() < input.surface.required_triangles().len() {
         return fault("a required triangle is not in the mesh", "the mesh".into());
     }
-    Ok(())
+    Ok(found)
 }
 
 fn no_features() -> Error {

@@ -62,7 +62,7 @@ pub(super) fn refine_with(dual: &mut Dual, fill: Fill, progress: &dyn Progress, 
     let faces: Vec<FaceId> = dual.topology().faces().collect();
     let entry = |&of: &FaceId| Entry { value: circumcircle(dual, of).1, of };
     let entries: Vec<Entry<FaceId>> = faces.par_iter().with_min_len(1024).map(entry).collect();
-    let mut refiner = Refiner { queue: Queue::new(entries), steiner };
+    let mut refiner = Refiner { queue: Queue::new(entries), steiner, touched: Vec::new() };
     let (mut reported, mut passes) = (dual.vertex_count(), 0);
     while dual.vertex_count() < count {
         if !refiner.improve_worst(dual) {
@@ -85,14 +85,18 @@ struct Refiner<'a> {
     /// Faces by their metric circumradius; stale once a face has changed.
     queue: Queue,
     steiner: Steiner<'a>,
+    /// Room for faces that have changed.
+    touched: Vec<FaceId>,
 }
 
 impl Refiner<'_> {
-    fn enqueue(&mut self, dual: &Dual, mut faces: Vec<FaceId>) {
+    /// Puts the faces that have changed into the queue.
+    fn enqueue(&mut self, dual: &mut Dual) {
+        dual.take_touched_into(&mut self.touched);
         // Flips around a seed touch its faces several times.
-        faces.sort_unstable();
-        faces.dedup();
-        for face in faces {
+        self.touched.sort_unstable();
+        self.touched.dedup();
+        for &face in &self.touched {
             if dual.topology().is_face(face) {
                 self.queue.push(Entry { value: circumcircle(dual, face).1, of: face });
             }
@@ -110,8 +114,7 @@ impl Refiner<'_> {
                 continue;
             }
             let done = self.insert_for(dual, face, (centre, radius));
-            let touched = dual.take_touched();
-            self.enqueue(dual, touched);
+            self.enqueue(dual);
             if done {
                 return true;
             }
@@ -167,8 +170,7 @@ impl Refiner<'_> {
             let edge = dual.topology().edge_between(a, b);
             done += usize::from(edge.is_some_and(|h| halve(dual, h)));
         }
-        let touched = dual.take_touched();
-        self.enqueue(dual, touched);
+        self.enqueue(dual);
         done > 0
     }
 }
@@ -202,10 +204,9 @@ pub(super) fn encroached_edge(dual: &Dual, face: FaceId, p: Point) -> Option<Hal
     let seen = face.half_edges().into_iter().chain(beyond.flat_map(|t| [t.next(), t.prev()]));
     let encroached = |h: &HalfEdge| {
         let [a, b] = dual.planar().ends(*h);
-        let tensor = dual.mean_tensor(topology.ends(*h));
-        topology.is_fixed(*h) && tensor.dot(a - p, b - p) < 0.0
+        dual.mean_tensor(topology.ends(*h)).dot(a - p, b - p) < 0.0
     };
-    seen.filter(encroached).max_by(|&g, &h| dual.edge_length(g).total_cmp(&dual.edge_length(h)))
+    seen.filter(|&h| topology.is_fixed(h)).filter(encroached).max_by(|&g, &h| dual.edge_length(g).total_cmp(&dual.edge_length(h)))
 }
 
 /// Puts a free seed inside a face or on an unconstrained edge, unless it would come nearer than [`SPACING`] to another.

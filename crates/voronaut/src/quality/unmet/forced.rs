@@ -25,24 +25,24 @@ pub(super) enum Forced {
 
 impl Forced {
     /// Of all edges of a mesh, in order, by their metric lengths.
-    pub(super) fn of(curves: &Curves, edges: &Edges, lengths: &[f64]) -> Vec<Self> {
+    pub(super) fn of(curves: &Curves, edges: &[[u32; 2]], lengths: &[f64]) -> Vec<Self> {
         let mut crowded = vec![false; curves.is_on.len()];
         let mut all = vec![Forced::No; lengths.len()];
-        for ((ends, &length), forced) in edges.ends().zip(lengths).zip(&mut all) {
-            let kept = curves.kept.get(&ends);
-            let both = |list: &[bool]| length < 1.0 && ends.iter().all(|&v| list[v as usize]);
+        for ((ends, &length), forced) in edges.iter().zip(lengths).zip(&mut all) {
             if is_unit(length) {
                 continue;
             }
+            let kept = curves.kept.get(ends);
+            let both = |list: &[bool]| length < 1.0 && ends.iter().all(|&v| list[v as usize]);
             if kept.is_some_and(|kept| kept.is_required || both(&curves.is_corner)) {
-                for v in ends {
+                for &v in ends {
                     crowded[v as usize] = true;
                 }
             } else if kept.is_none() && both(&curves.is_on) {
                 *forced = Forced::Across;
             }
         }
-        for (ends, forced) in edges.ends().zip(&mut all) {
+        for (ends, forced) in edges.iter().zip(&mut all) {
             if ends.iter().any(|&v| crowded[v as usize]) {
                 *forced = Forced::Kept;
             }

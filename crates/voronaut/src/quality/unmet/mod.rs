@@ -267,15 +267,16 @@ fn find<'a>(
     let lengths = of_edges(&edges, &length)?;
     drop(length);
     let curves = Curves::of(mesh, &edges, corner);
-    let forced = Forced::of(&curves, &edges, &lengths);
-    let judged = |((ends, &length), &forced)| Judged { ends, length, forced };
-    let all = || edges.ends().zip(&lengths).zip(&forced).map(judged);
+    let ends: Vec<[u32; 2]> = edges.ends().collect();
+    let forced = Forced::of(&curves, &ends, &lengths);
+    let judged = |((&ends, &length), &forced)| Judged { ends, length, forced };
+    let all = || ends.iter().zip(&lengths).zip(&forced).map(judged);
     let wrong: Vec<Judged> = all().filter(|edge| !is_unit(edge.length)).collect();
     let near = Density::near(mesh.points.len(), &wrong, all);
     let of_poor = distinct(poor.iter().flat_map(|&(t, _)| edges_of(mesh.triangles[t])).map(in_order));
     let sides: Vec<Judged> = all().filter(|edge| of_poor.binary_search(&edge.ends).is_ok()).collect();
-    let quality = summed(mesh, &edges, &lengths, &of_all, &position);
-    drop((edges, forced));
+    let quality = summed(mesh, &edges, &ends, &lengths, &of_all, &position);
+    drop((edges, ends, forced));
     let density = Density::of(mesh.points.len(), near);
     let turns = |edge: &Judged| {
         let around = around(edge.ends);

@@ -23,6 +23,7 @@ use crate::lists::marked;
 use crate::mesh::{Edges, Mesh};
 use crate::metric::{MetricField, Sampled};
 use crate::progress::Progress;
+use crate::quality::Validity;
 use crate::surface::Input;
 use crate::surface::metric::SurfaceMetric;
 use plane::InPlane;
@@ -75,7 +76,7 @@ trait Divisible {
     }
 
     /// That the whole is valid.
-    fn check(&self, mesh: &Mesh) -> Result<()>;
+    fn check(&self, mesh: &Mesh) -> Result<Validity>;
 
     /// The logarithms of the metric lengths of edges.
     fn logarithms(&self, mesh: &Mesh, edges: &[[u32; 2]]) -> Vec<f64>;
@@ -174,13 +175,13 @@ fn in_parts(
     remake(on, &mut whole, ("junctions", &junctions, cut.vertices), make, &watch)?;
     progress.begin("checking", 1)?;
     let mesh = whole.into_mesh();
-    watch.time("check", || on.check(&mesh))?;
+    let validity = watch.time("check", || on.check(&mesh))?;
     if mesh.points.len() != cut.vertices {
         notes.push(format!("{} vertices were asked for, but parts leave room for {}", cut.vertices, mesh.points.len()));
     }
     let metric_scale = if options.vertices.is_some() { unit_factor(on, &mesh) } else { cut.scale };
     let closed_form_scale = options.vertices.map(|count| closed_form_scale(count, cut.complexity));
-    Ok(Meshed { mesh, metric_scale, closed_form_scale, seconds: watch.seconds(), notes, ..Meshed::default() })
+    Ok(Meshed { mesh, validity, metric_scale, closed_form_scale, seconds: watch.seconds(), notes, ..Meshed::default() })
 }
 
 /// Lets the regions of a round be made anew, so that the whole then has so many vertices.

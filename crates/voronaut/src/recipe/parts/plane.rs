@@ -14,7 +14,7 @@ use crate::mesh::{EdgeSide, Edges, Mesh};
 use crate::metric::{MetricField, complexities, nearby};
 use crate::parallel::prelude::*;
 use crate::progress::Progress;
-use crate::quality;
+use crate::quality::{self, Validity};
 use crate::recipe::settle::Stopwatch;
 use crate::recipe::{Effort, Job, MeshOptions, mesh};
 use crate::sampling::{MetricArc, Plan, pieces};
@@ -63,8 +63,9 @@ impl Divisible for InPlane<'_> {
         if self.is_whole { None } else { self.field.excerpt(domain) }
     }
 
-    fn check(&self, mesh: &Mesh) -> Result<()> {
-        quality::check(mesh)
+    fn check(&self, mesh: &Mesh) -> Result<Validity> {
+        let found = quality::validity(mesh);
+        found.demand().map(|()| found)
     }
 
     fn logarithms(&self, mesh: &Mesh, edges: &[[u32; 2]]) -> Vec<f64> {

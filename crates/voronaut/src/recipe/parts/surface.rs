@@ -12,7 +12,7 @@ use crate::mesh::{Mesh, Network};
 use crate::metric::{Expression, Norm};
 use crate::parallel::prelude::*;
 use crate::progress::Progress;
-use crate::quality::Meetings;
+use crate::quality::{Meetings, Validity};
 use crate::recipe::on_surface::SurfacePlan;
 use crate::recipe::surface_pass::{Setting, demand};
 use crate::recipe::{MeshOptions, Stopwatch, mesh_surface};
@@ -113,7 +113,7 @@ impl Divisible for OnSurface<'_> {
         Ok(region)
     }
 
-    fn check(&self, mesh: &Mesh) -> Result<()> {
+    fn check(&self, mesh: &Mesh) -> Result<Validity> {
         demand(self.input, mesh, &Meetings::of(self.input.whole_mesh()))
     }
 
