@@ -132,15 +132,23 @@ impl Dual<'_> {
         wanted
     }
 
-    /// Goes through the margins of edges: what is known of them is looked up in parallel, the others are tested one after the other.
+    /// Goes through the margins of edges: what is known of them is looked up in parallel, and what is not is tested one after the other with full
+    /// effort, in parallel with less.
     pub(super) fn each_margin(&mut self, edges: &[HalfEdge], effort: Effort, mut then: impl FnMut(HalfEdge, Margin)) {
         for edges in edges.chunks(LOOKED_UP) {
-            let known = |&h: &HalfEdge| {
-                self.margins.get(self.topology().canonical(h), &self.quad(h)).filter(|_| effort == Effort::Full)
-            };
-            let known: Vec<Option<Margin>> = edges.par_iter().with_min_len(1024).map(known).collect();
-            for (&h, known) in edges.iter().zip(known) {
-                then(h, known.unwrap_or_else(|| self.margin(h, effort)));
+            if effort == Effort::Full {
+                let known = |&h: &HalfEdge| self.margins.get(self.topology().canonical(h), &self.quad(h));
+                let known: Vec<Option<Margin>> = edges.par_iter().with_min_len(1024).map(known).collect();
+                for (&h, known) in edges.iter().zip(known) {
+                    then(h, known.unwrap_or_else(|| self.margin(h, effort)));
+                }
+                continue;
+            }
+            let climbed = |&h: &HalfEdge| self.climbed(&self.quad(h), effort);
+            let climbed: Vec<Tested> = edges.par_iter().with_min_len(256).map(climbed).collect();
+            for (&h, Tested { margin, level }) in edges.iter().zip(climbed) {
+                self.counters.tests[level] += 1;
+                then(h, margin);
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Finer triangles: edges split and flipped.
 
 use super::UPRIGHT;
-use super::work::{Work, leaning, quality};
+use super::work::{Vertex, Work, leaning, quality};
 use crate::geometry::NEEDLE;
 use crate::parallel::prelude::*;
 use crate::triangulation::{Flipping, HalfEdge, Lawson, Limit, Triangulation, VertexId};
@@ -39,11 +39,18 @@ impl Work<'_> {
         let long = edges.filter(|&h| self.is_long(h, longer)).map(|h| (self.length_of(h), h));
         let mut long: Vec<(f64, HalfEdge)> = long.collect();
         long.sort_by(|x, y| y.0.total_cmp(&x.0).then(x.1.cmp(&y.1)));
+        let middle = |&(_, h): &(f64, HalfEdge)| (h, self.topology.ends(h), self.middle(h));
+        let middles: Vec<(HalfEdge, [VertexId; 2], Option<Vertex>)> =
+            long.par_iter().with_min_len(16).map(middle).collect();
         let mut new = Vec::new();
-        for (_, h) in long {
+        for (h, ends, vertex) in middles {
             // Splits beside it may have put another edge into this slot.
-            if new.len() < most && self.is_long(h, longer) {
-                new.extend(self.split_in_the_middle(h));
+            let is_same = self.topology.ends(h) == ends;
+            if new.len() < most
+                && self.is_long(h, longer)
+                && let Some(vertex) = if is_same { vertex } else { self.middle(h) }
+            {
+                new.extend(self.split_at(h, vertex));
             }
         }
         new
@@ -62,13 +69,17 @@ impl Work<'_> {
         length > longer && [h.next(), h.prev(), twin.next(), twin.prev()].into_iter().all(is_longest)
     }
 
-    /// Splits an edge in the middle, but not where that would turn a triangle away from the surface, or make the first needle.
-    fn split_in_the_middle(&mut self, h: HalfEdge) -> Option<VertexId> {
+    /// The vertex in the middle of an edge.
+    fn middle(&self, h: HalfEdge) -> Option<Vertex> {
         let [p, q] = self.topology.ends(h).map(|v| self.at(v).place);
         let middle = p.position.lerp(q.position, 0.5);
         let place =
             if self.keeps_edges { self.input.place_on_triangles(&p, middle) } else { self.input.lift(&p, middle) }?;
-        let vertex = self.vertex(place);
+        Some(self.vertex(place))
+    }
+
+    /// Splits an edge, but not where that would turn a triangle away from the surface, or make the first needle.
+    fn split_at(&mut self, h: HalfEdge, vertex: Vertex) -> Option<VertexId> {
         let t = &self.topology;
         let halves = |side: HalfEdge| {
             let [a, b, c] = [t.origin(side), t.target(side), t.apex(side)].map(|v| self.at(v));
@@ -94,8 +105,11 @@ impl Work<'_> {
 
     /// Flips edges that are not Delaunay, and what follows from them.
     fn flip_from(&mut self, edges: Vec<HalfEdge>) {
+        // Others are looked at again when a flip beside them has changed what they are between.
+        let may_be_wanted = |&h: &HalfEdge| self.topology.quad(h).is_some_and(|quad| self.margin(quad) < -TIE);
+        let edges = edges.into_par_iter().with_min_len(256).filter(may_be_wanted);
         let mut lawson = Lawson::default();
-        lawson.queue(edges);
+        lawson.queue(edges.collect::<Vec<_>>());
         lawson.pass(self, LIMIT);
     }
 }
