@@ -107,15 +107,12 @@ impl Dual<'_> {
         let (mut open, mut dear) = (Vec::new(), Vec::new());
         self.margins.make_room(3 * self.topology().face_slots());
         for (h, quad, tested) in climbed {
-            match tested.filter(|_| is_settled(tested)) {
-                Some(Tested { margin, level }) => {
-                    self.counters.tests[level] += 1;
-                    self.margins.put(h, &quad, margin);
-                }
-                None => {
-                    open.push(h);
-                    dear.push(quad);
-                }
+            if let Some(Tested { margin, level }) = tested.filter(|_| is_settled(tested)) {
+                self.counters.tests[level] += 1;
+                self.margins.put(h, &quad, margin);
+            } else {
+                open.push(h);
+                dear.push(quad);
             }
         }
         let found = self.test(&dear);

@@ -20,15 +20,16 @@ pub(crate) use rayon::join;
 
 use prelude::*;
 
-/// Numbers that are worth a thread's while to copy.
-const COPIED: usize = 1 << 16;
+/// Bytes that are worth a thread's while to copy.
+const COPIED: usize = 1 << 19;
 
 /// Makes a list another one, in the memory that it has.
 pub(crate) fn copy_over<T: Copy + Send + Sync>(to: &mut Vec<T>, from: &[T]) {
+    let part = (COPIED / size_of::<T>().max(1)).max(1);
     if to.len() == from.len() {
-        to.par_chunks_mut(COPIED).zip(from.par_chunks(COPIED)).for_each(|(to, from)| to.copy_from_slice(from));
+        to.par_chunks_mut(part).zip(from.par_chunks(part)).for_each(|(to, from)| to.copy_from_slice(from));
     } else {
-        *to = from.par_iter().with_min_len(COPIED).copied().collect();
+        *to = from.par_iter().with_min_len(part).copied().collect();
     }
 }
 
@@ -38,7 +39,8 @@ mod tests {
 
     #[test]
     fn a_list_becomes_another_of_any_length() {
-        for (before, length) in [(0, 5), (9, 5), (5, 5), (3 * COPIED, 3 * COPIED), (2, 3 * COPIED + 1)] {
+        let many = 3 * COPIED / size_of::<usize>();
+        for (before, length) in [(0, 5), (9, 5), (5, 5), (many, many), (2, many + 1)] {
             let from: Vec<usize> = (0..length).collect();
             let mut to = vec![7; before];
             copy_over(&mut to, &from);

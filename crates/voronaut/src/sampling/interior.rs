@@ -62,7 +62,11 @@ pub(super) fn refine_with(dual: &mut Dual, fill: Fill, progress: &dyn Progress, 
     let faces: Vec<FaceId> = dual.topology().faces().collect();
     let entry = |&of: &FaceId| Entry { value: circumcircle(dual, of).1, of };
     let entries: Vec<Entry<FaceId>> = faces.par_iter().with_min_len(1024).map(entry).collect();
-    let mut refiner = Refiner { queue: Queue::new(entries), steiner, touched: Vec::new() };
+    let mut radii = vec![0.0; dual.topology().face_slots()];
+    for &Entry { value, of } in &entries {
+        radii[of.index()] = value;
+    }
+    let mut refiner = Refiner { queue: Queue::new(entries), radii, steiner, touched: Vec::new() };
     let (mut reported, mut passes) = (dual.vertex_count(), 0);
     while dual.vertex_count() < count {
         if !refiner.improve_worst(dual) {
@@ -84,6 +88,8 @@ pub(super) fn refine_with(dual: &mut Dual, fill: Fill, progress: &dyn Progress, 
 struct Refiner<'a> {
     /// Faces by their metric circumradius; stale once a face has changed.
     queue: Queue,
+    /// What it was last, of each face.
+    radii: Vec<f64>,
     steiner: Steiner<'a>,
     /// Room for faces that have changed.
     touched: Vec<FaceId>,
@@ -93,12 +99,15 @@ impl Refiner<'_> {
     /// Puts the faces that have changed into the queue.
     fn enqueue(&mut self, dual: &mut Dual) {
         dual.take_touched_into(&mut self.touched);
+        self.radii.resize(dual.topology().face_slots(), 0.0);
         // Flips around a seed touch its faces several times.
         self.touched.sort_unstable();
         self.touched.dedup();
         for &face in &self.touched {
             if dual.topology().is_face(face) {
-                self.queue.push(Entry { value: circumcircle(dual, face).1, of: face });
+                let value = circumcircle(dual, face).1;
+                self.queue.push(Entry { value, of: face });
+                self.radii[face.index()] = value;
             }
         }
     }
@@ -106,13 +115,10 @@ impl Refiner<'_> {
     /// Takes the worst face and inserts a seed for it, if one can be had. False when no face is left.
     fn improve_worst(&mut self, dual: &mut Dual) -> bool {
         while let Some(Entry { value: radius, of: face }) = self.queue.pop() {
-            if !dual.topology().is_face(face) {
+            if !dual.topology().is_face(face) || self.radii[face.index()].to_bits() != radius.to_bits() {
                 continue;
             }
-            let (centre, now) = circumcircle(dual, face);
-            if now.to_bits() != radius.to_bits() {
-                continue;
-            }
+            let (centre, _) = circumcircle(dual, face);
             let done = self.insert_for(dual, face, (centre, radius));
             self.enqueue(dual);
             if done {
@@ -206,7 +212,9 @@ pub(super) fn encroached_edge(dual: &Dual, face: FaceId, p: Point) -> Option<Hal
         let [a, b] = dual.planar().ends(*h);
         dual.mean_tensor(topology.ends(*h)).dot(a - p, b - p) < 0.0
     };
-    seen.filter(|&h| topology.is_fixed(h)).filter(encroached).max_by(|&g, &h| dual.edge_length(g).total_cmp(&dual.edge_length(h)))
+    seen.filter(|&h| topology.is_fixed(h))
+        .filter(encroached)
+        .max_by(|&g, &h| dual.edge_length(g).total_cmp(&dual.edge_length(h)))
 }
 
 /// Puts a free seed inside a face or on an unconstrained edge, unless it would come nearer than [`SPACING`] to another.

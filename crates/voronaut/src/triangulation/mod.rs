@@ -42,10 +42,7 @@ impl Triangulation {
     /// edge is traversed twice in the same direction and that the triangles around each vertex form one fan;
     /// [`Triangulation::check`] tells.
     pub(crate) fn from_triangles(vertex_count: usize, triangles: &[[u32; 3]], regions: &[i32]) -> Self {
-        let mut result = Self { start: vec![NONE; vertex_count], ..Self::default() };
-        for (triangle, &region) in triangles.iter().zip(regions) {
-            result.push_face(triangle.map(VertexId), region);
-        }
+        let mut result = Self::apart(vertex_count, triangles, regions.to_vec());
         result.pair_twins();
         for h in (0..result.origin.len() as u32).map(HalfEdge) {
             result.set_start(h);
@@ -57,10 +54,7 @@ impl Triangulation {
     /// and a twin names this one back. Edges may be doubled; vertices may have several fans
     /// ([`Triangulation::split_pinched_vertices`]).
     pub(crate) fn glued(vertex_count: usize, triangles: &[[u32; 3]], twins: &[Option<u32>]) -> Self {
-        let mut result = Self { start: vec![NONE; vertex_count], ..Self::default() };
-        for triangle in triangles {
-            result.push_face(triangle.map(VertexId), 0);
-        }
+        let mut result = Self::apart(vertex_count, triangles, vec![0; triangles.len()]);
         for (h, twin) in (0..).zip(twins) {
             if let Some(t) = twin.filter(|&t| h < t) {
                 result.glue(HalfEdge(h), HalfEdge(t));
@@ -70,6 +64,21 @@ impl Triangulation {
             result.set_start(h);
         }
         result
+    }
+
+    /// Triangles that are not glued yet.
+    fn apart(vertex_count: usize, triangles: &[[u32; 3]], region: Vec<i32>) -> Self {
+        debug_assert_eq!(triangles.len(), region.len(), "each has its region");
+        let slots = 3 * triangles.len();
+        Self {
+            origin: triangles.as_flattened().iter().map(|&v| VertexId(v)).collect(),
+            twin: vec![NONE; slots],
+            length: vec![f64::NAN; slots],
+            constraint: vec![NONE; slots],
+            region,
+            start: vec![NONE; vertex_count],
+            ..Self::default()
+        }
     }
 
     /// Becomes another one, in the memory that this one has.
