@@ -15,6 +15,7 @@ use crate::progress::Sketch;
 use crate::surface::metric::SurfaceMetric;
 use crate::surface::{Chart, Input, Place};
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
+use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 /// The least cosine between a triangle's normal and those of the surface at its corners.
 pub(super) const UPRIGHT: f64 = 0.3;
@@ -220,18 +221,30 @@ impl<'a> SurfaceDual<'a> {
         3.0_f64.sqrt() * square.max(0.0).sqrt() / (x * x + y * y + z * z)
     }
 
-    /// The geometric mean of the lengths of edges that are free to be as long as the metric wants: not between seeds that stay, nor
-    /// between seeds that have come to one place.
-    pub(crate) fn mean_length(&self) -> f64 {
+    /// Edges that are free to be as long as the metric wants: not between seeds that stay. All, if there are none.
+    fn free_edges(&self) -> Vec<HalfEdge> {
         let is_free = |h: &HalfEdge| self.topology().ends(*h).iter().any(|&v| self.kind(v) == Kind::Free);
-        let mut edges: Vec<HalfEdge> = self.topology().edges().filter(is_free).collect();
-        if edges.is_empty() {
-            edges = self.topology().edges().collect();
-        }
+        let edges: Vec<HalfEdge> = self.topology().edges().filter(is_free).collect();
+        if edges.is_empty() { self.topology().edges().collect() } else { edges }
+    }
+
+    /// The geometric mean of the lengths of edges that are free, but for those between seeds that have come to one place.
+    pub(crate) fn mean_length(&self) -> f64 {
+        let edges = self.free_edges();
         let log = |&h: &HalfEdge| self.estimate(self.topology().ends(h)).value.logarithm();
         let mut logs: Vec<f64> = edges.par_iter().with_min_len(64).map(log).collect();
         logs.retain(|log| log.is_finite());
         (logs.iter().sum::<f64>() / logs.len().max(1) as f64).exponential()
+    }
+
+    /// The share of the edges that are free whose lengths are within a factor of sqrt(2) of one.
+    pub(crate) fn unit_share(&self) -> f64 {
+        let edges = self.free_edges();
+        let is_unit = |&&h: &&HalfEdge| {
+            let length = self.estimate(self.topology().ends(h)).value;
+            (FRAC_1_SQRT_2..=SQRT_2).contains(&length)
+        };
+        edges.par_iter().with_min_len(64).filter(is_unit).count() as f64 / edges.len().max(1) as f64
     }
 
     /// Where a move leads a seed, unless the surface turns away.

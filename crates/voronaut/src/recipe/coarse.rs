@@ -18,7 +18,7 @@ use crate::triangulation::VertexId;
 /// 0.983 for 0.977), but take as long or longer.
 const COARSEST: f64 = 2000.0;
 /// A coarser mesh has at most this share of the vertices: else most of both are corners of the domain.
-const PAYS: f64 = 0.5;
+pub(super) const PAYS: f64 = 0.5;
 /// The share of a coarser mesh's seeds at which the metric may be rough. With more, seeds are dense in the wrong places: 100,000 for front
 /// and layer, whose coarser mesh has 0.06 to 0.13, have 1.5 % unit edges less and an error greater by 1.5 %.
 const ROUGH: f64 = 0.05;
@@ -26,7 +26,7 @@ const ROUGH: f64 = 0.05;
 /// lower by 0.3 %; with shares of 0.2 to 0.35 unit edges are 0.02 to 0.6 % fewer.
 const HALF_KNOWN: f64 = 0.2;
 /// How a coarser mesh is relaxed, in how many parts.
-const PATIENCE: Patience = Patience { steps: 20, gain: 2e-3 };
+pub(super) const PATIENCE: Patience = Patience { steps: 20, gain: 2e-3 };
 const PARTS: usize = 2;
 /// Edges that are longer are halved: both halves are then nearer to one, by ratio.
 const LONG: f64 = std::f64::consts::SQRT_2;
@@ -117,7 +117,7 @@ impl<'a> Job<'a> {
 }
 
 /// The factor on the metric of a mesh so many levels coarser.
-fn factor(scale: f64, level: usize) -> f64 {
+pub(super) fn factor(scale: f64, level: usize) -> f64 {
     scale * 0.25_f64.powi(level.try_into().unwrap_or(i32::MAX))
 }
 

@@ -18,6 +18,7 @@ mod protection;
 mod remesh_input;
 mod settle;
 mod surface_field;
+mod surface_coarse;
 mod surface_pass;
 
 pub use adapt::{Ground, LoopOptions, Source, Step, adapt};

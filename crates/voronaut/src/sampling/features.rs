@@ -67,6 +67,20 @@ impl FeatureSeeds {
         let each = (0..).zip(&self.seeds).flat_map(|(i, seed)| seed.places.iter().map(move |place| (*place, i)));
         each.unzip()
     }
+
+    /// Of the seeds that are there those that are left without every other one of each curve: all of required curves, and of others so many that
+    /// no loop has less than it needs.
+    pub(crate) fn every_other(&self, there: &[bool]) -> Vec<bool> {
+        let mut left = there.to_vec();
+        for edges in self.edges.chunk_by(|x, y| x.curve == y.curve) {
+            let inner = edges[1..].iter().map(|edge| edge.ends[0] as usize);
+            let inner: Vec<usize> = inner.filter(|&seed| there[seed]).collect();
+            if !edges[0].mark.is_required && inner.len() + 1 >= 2 * LEAST_OF_LOOP {
+                inner.into_iter().step_by(2).for_each(|seed| left[seed] = false);
+            }
+        }
+        left
+    }
 }
 
 impl<'a> MeasuredCurves<'a> {

@@ -10,7 +10,7 @@ mod plan;
 mod protected;
 mod queue;
 
-pub(crate) use adapted::{Adapted, Held, Holding, Wanted, adapted, contracted, exchanged};
+pub(crate) use adapted::{Adapted, Halving, Held, Holding, Wanted, adapted, contracted, exchanged, halved};
 pub(crate) use curves::{CurveSizes, simplify};
 pub use farthest::Farthest;
 pub(crate) use farthest::{fill_farthest, refine_farthest};

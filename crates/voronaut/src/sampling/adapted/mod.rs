@@ -4,6 +4,7 @@
 //! needles of the metric than were there, splits none where there were none: where nothing is relaxed afterwards they would stay.
 
 mod coarsen;
+mod halve;
 mod refine;
 mod work;
 
@@ -12,6 +13,8 @@ use crate::surface::metric::SurfaceMetric;
 use crate::surface::{Input, Place, closest_weights};
 use crate::triangulation::{Triangulation, VertexId};
 use work::Work;
+
+pub(crate) use halve::{Halving, halved};
 
 /// The least cosine between a new triangle's normal and those of the surface at its corners.
 const UPRIGHT: f64 = 0.5;
@@ -91,8 +94,8 @@ pub(crate) fn adapted(input: &Input, metric: &dyn SurfaceMetric, wanted: &Wanted
     Some(work.finished())
 }
 
-/// What is left of a triangulation of the surface when vertices are contracted onto as many as are `kept`: onto these, as far as
-/// triangles stand upright. The first of them, so many, stay and come first.
+/// What is left of a triangulation of the surface when vertices are contracted until there are so many: onto those that are `kept`, as far as
+/// triangles stand upright. The first of these, so many, stay and come first; of the border no others are left.
 pub(crate) fn contracted(
     input: &Input,
     metric: &dyn SurfaceMetric,
@@ -100,17 +103,18 @@ pub(crate) fn contracted(
     (topology, places): (Triangulation, Vec<Place>),
     kept: &[VertexId],
     staying: usize,
+    count: usize,
 ) -> Adapted {
     let mut work = Work::of(input, metric, factor, topology, places);
     for (i, v) in (0..).zip(kept) {
         work.vertices[v.index()].given = Some(i);
     }
     work.contract_border();
-    work.contract_to(kept.len());
+    work.contract_to(count);
     for v in &kept[staying..] {
         work.vertices[v.index()].given = None;
     }
-    work.contract_to(kept.len());
+    work.contract_to(count);
     work.finished()
 }
 

@@ -56,7 +56,7 @@ impl Work<'_> {
         new
     }
 
-    fn length_of(&self, h: HalfEdge) -> f64 {
+    pub(super) fn length_of(&self, h: HalfEdge) -> f64 {
         let [v, w] = self.topology.ends(h);
         self.length(v, w)
     }
@@ -70,7 +70,7 @@ impl Work<'_> {
     }
 
     /// The vertex in the middle of an edge.
-    fn middle(&self, h: HalfEdge) -> Option<Vertex> {
+    pub(super) fn middle(&self, h: HalfEdge) -> Option<Vertex> {
         let [p, q] = self.topology.ends(h).map(|v| self.at(v).place);
         let middle = p.position.lerp(q.position, 0.5);
         let place =
@@ -79,7 +79,7 @@ impl Work<'_> {
     }
 
     /// Splits an edge, but not where that would turn a triangle away from the surface, or make the first needle.
-    fn split_at(&mut self, h: HalfEdge, vertex: Vertex) -> Option<VertexId> {
+    pub(super) fn split_at(&mut self, h: HalfEdge, vertex: Vertex) -> Option<VertexId> {
         let t = &self.topology;
         let halves = |side: HalfEdge| {
             let [a, b, c] = [t.origin(side), t.target(side), t.apex(side)].map(|v| self.at(v));

@@ -26,8 +26,8 @@ pub(super) struct Work<'a> {
 pub(super) struct Vertex {
     pub(super) place: Place,
     /// What its triangles are to face.
-    facing: Vector3,
-    tensor: Tensor3,
+    pub(super) facing: Vector3,
+    pub(super) tensor: Tensor3,
     /// The number of the given place that it is.
     pub(super) given: Option<u32>,
     /// Whether it stays.
