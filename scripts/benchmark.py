@@ -21,6 +21,7 @@ import datetime
 import functools
 import importlib.metadata
 import importlib.util
+import itertools
 import json
 import math
 import os
@@ -480,6 +481,28 @@ def multiple(name, mine, theirs):
     return f"{medians(mine)['s'] / medians(theirs)['s']:.2f}, {pairs:.2f}"
 
 
+def gains(rows):
+    """Of jobs of a second or more in the rows of a group: what threads gain, what share of the time on one no others help with, and what
+    16 cores would then gain (Amdahl's law)."""
+    found = []
+    for (case, name), them in itertools.groupby(rows[1:], key=lambda row: row[:2]):
+        seconds = {int(threads): float(s) for _, _, threads, s, *_ in them if not s.startswith("fails")}
+        most = max(seconds, default=1)
+        if not name.startswith("voronaut") or most == 1 or seconds.get(1, 0) < 1:
+            continue
+        gain = seconds[1] / seconds[most]
+        alone = min(max((most / gain - 1) / (most - 1), 0), 1)
+        found.append([case, name, str(most), f"{gain:.2f}", f"{alone:.2f}", f"{1 / (alone + (1 - alone) / 16):.1f}"])
+    return found
+
+
+def threads(sections):
+    said = "Jobs of a second or more on one thread. By Amdahl's law: what part of that time only one thread works, and what 16 cores would gain."
+    heading = ["input", "program", "threads", "times as fast as one", "share on one alone", "16 cores: times as fast"]
+    rows = [heading, *(row for _, _, rows in sections for row in gains(rows))]
+    return f"## Threads\n\n{said}\n\n{markdown(rows)}"
+
+
 def where_better(case, results):
     """A line for every peer and way of ours in which the peer has a better figure."""
     lines = []
@@ -517,6 +540,7 @@ def page(typed, sections, better):
              f"({version}). `scripts/benchmark.py {given} --runs {typed.runs} --page docs/benchmark.md` wrote this page; no figure in it "
              f"is typed by hand.\n\n{' '.join(__doc__.split(chr(10) * 2)[-1].split())}\n"]
     parts += [f"## {name}\n\n{text}\n\n<!-- measured: benchmark-{name} -->\n{markdown(rows)}<!-- end -->\n" for name, text, rows in sections]
+    parts.append(threads(sections))
     said = "In what a peer is faster, takes less, or has a better figure: of costs in brackets beside how many threads of ours."
     lines = "\n".join(better) or "None, of the peers that ran."
     return "\n".join([*parts, f"## Where peers are better\n\n{said}\n\n{lines}\n"])
