@@ -486,7 +486,7 @@ def gains(rows):
     16 cores would then gain (Amdahl's law)."""
     found = []
     for (case, name), them in itertools.groupby(rows[1:], key=lambda row: row[:2]):
-        seconds = {int(threads): float(s) for _, _, threads, s, *_ in them if not s.startswith("fails")}
+        seconds = {int(threads): float(s.replace(",", "")) for _, _, threads, s, *_ in them if not s.startswith("fails")}
         most = max(seconds, default=1)
         if not name.startswith("voronaut") or most == 1 or seconds.get(1, 0) < 1:
             continue
