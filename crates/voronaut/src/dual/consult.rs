@@ -213,8 +213,7 @@ impl Dual<'_> {
     fn uncertain_edges(&mut self, unsure: &HashSet<[VertexId; 2]>) -> Vec<([VertexId; 2], Margin)> {
         let topology = self.topology();
         let ends = |h: HalfEdge| diagonals(&self.quad(h))[0];
-        let is_open = |&h: &HalfEdge| !topology.is_fixed(h) && (!self.is_held(h) || unsure.contains(&ends(h)));
-        let edges: Vec<HalfEdge> = topology.edges().filter(is_open).collect();
+        let edges = topology.edges_with(|h| !topology.is_fixed(h) && (!self.is_held(h) || unsure.contains(&ends(h))));
         let mut uncertain = Vec::new();
         self.each_margin(&edges, Effort::Full, |h, margin| {
             uncertain.extend((!margin.is_certain()).then_some((h, margin)));
@@ -223,7 +222,7 @@ impl Dual<'_> {
     }
 
     fn edges_to_ask(&mut self, road: Road) -> Vec<HalfEdge> {
-        let free: Vec<HalfEdge> = self.free_edges().collect();
+        let free = self.free_edges();
         match road {
             Road::Geodesic => Vec::new(),
             Road::Canvas => free,
@@ -248,7 +247,7 @@ impl Dual<'_> {
     /// Holds the edges of the mesh against those of the nerve.
     fn compare(&mut self, road: Road, wanted: &HashSet<[VertexId; 2]>, is_inner: &[bool]) -> Consultation {
         let mut found = Consultation::default();
-        for h in self.free_edges().collect::<Vec<_>>() {
+        for h in self.free_edges() {
             let [edge, other] = diagonals(&self.quad(h));
             if !edge.iter().chain(&other).all(|v| is_inner[v.index()]) {
                 continue;

@@ -147,7 +147,7 @@ impl Dual<'_> {
 
     /// Edges that the metric wants flipped and the plane forbids, with their margins, certain or not.
     pub(crate) fn blocked_flips(&mut self, effort: Effort) -> Vec<(HalfEdge, Margin)> {
-        let edges: Vec<HalfEdge> = self.free_edges().collect();
+        let edges = self.free_edges();
         let forbidden = edges.into_par_iter().with_min_len(1024).filter(|&h| !self.allows_flip(h));
         let forbidden: Vec<HalfEdge> = forbidden.collect();
         let mut wanted = Vec::new();
@@ -157,7 +157,7 @@ impl Dual<'_> {
 
     /// The smallest margin among all edges that are not constrained; `None` of none.
     pub(crate) fn smallest_margin(&mut self, effort: Effort) -> Option<f64> {
-        let edges: Vec<HalfEdge> = self.free_edges().collect();
+        let edges = self.free_edges();
         let mut smallest: Option<f64> = None;
         self.each_margin(&edges, effort, |_, margin| {
             smallest = Some(smallest.map_or(margin.value, |least| least.min(margin.value)));
@@ -166,8 +166,9 @@ impl Dual<'_> {
     }
 
     /// The edges that a flip may remove.
-    pub(super) fn free_edges(&self) -> impl Iterator<Item = HalfEdge> + '_ {
-        self.planar.topology.edges().filter(|&h| !self.planar.topology.is_fixed(h) && !self.is_held(h))
+    pub(super) fn free_edges(&self) -> Vec<HalfEdge> {
+        let topology = &self.planar.topology;
+        topology.edges_with(|h| !topology.is_fixed(h) && !self.is_held(h))
     }
 
     pub(super) fn is_held(&self, h: HalfEdge) -> bool {

@@ -36,7 +36,7 @@ impl Dual<'_> {
     fn longest(&self, above: f64, most: usize) -> Vec<HalfEdge> {
         let topology = self.topology();
         let may_be_cut = |h: HalfEdge| topology.constraint(h).is_none_or(|c| !self.required[c.0 as usize]);
-        let edges: Vec<HalfEdge> = topology.edges().filter(|&h| may_be_cut(h)).collect();
+        let edges = topology.edges_with(may_be_cut);
         let measured = edges.par_iter().with_min_len(256).map(|&h| (self.edge_length(h), h));
         let mut long: Vec<(f64, HalfEdge)> = measured.filter(|(length, _)| *length > above).collect();
         if long.len() > most {

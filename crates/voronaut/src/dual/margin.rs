@@ -95,7 +95,7 @@ impl Dual<'_> {
 
     /// Computes the margins of all edges with all levels, in parallel.
     pub(super) fn measure_margins(&mut self) {
-        let edges: Vec<HalfEdge> = self.free_edges().collect();
+        let edges = self.free_edges();
         let by = ByEffort { dual: self, effort: Effort::Full };
         let cheap = |&h: &HalfEdge| {
             let quad = self.quad(h);
@@ -123,7 +123,7 @@ impl Dual<'_> {
 
     /// The edges whose margins by all levels want them flipped.
     pub(super) fn wanted_fully(&mut self) -> Vec<HalfEdge> {
-        let edges: Vec<HalfEdge> = self.free_edges().collect();
+        let edges = self.free_edges();
         let mut wanted = Vec::new();
         self.each_margin(&edges, Effort::Full, |h, margin| wanted.extend((margin.value < -TIE).then_some(h)));
         wanted

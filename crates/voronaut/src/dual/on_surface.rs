@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::geodesic::{LocalMetric, STILL};
 use crate::geometry::{Point, Point3, Seen, TangentPlane, Tensor3, Vector, Vector3};
 use crate::metric::Scaled;
-use crate::parallel::prelude::*;
+use crate::parallel::{copy_over, prelude::*};
 use crate::progress::Sketch;
 use crate::surface::metric::SurfaceMetric;
 use crate::surface::{Chart, Input, Place};
@@ -38,7 +38,7 @@ pub(crate) struct SurfaceDual<'a> {
 }
 
 /// What moves and flips change. Vertex i of the topology is seed i.
-#[derive(Clone)]
+#[derive(Default)]
 pub(crate) struct State {
     pub(super) topology: Triangulation,
     pub(super) places: Vec<Place>,
@@ -48,6 +48,19 @@ pub(crate) struct State {
     pub(super) locals: Vec<LocalMetric>,
     pub(super) measured: Vec<Measured>,
     kinds: Vec<Kind>,
+}
+
+impl State {
+    /// Becomes another one, in the memory that this one has.
+    fn copy_from(&mut self, other: &Self) {
+        self.topology.copy_from(&other.topology);
+        copy_over(&mut self.places, &other.places);
+        copy_over(&mut self.planes, &other.planes);
+        copy_over(&mut self.facing, &other.facing);
+        copy_over(&mut self.locals, &other.locals);
+        copy_over(&mut self.measured, &other.measured);
+        copy_over(&mut self.kinds, &other.kinds);
+    }
 }
 
 /// Where the metric of a seed was measured, and what it is there, not scaled.
@@ -71,8 +84,8 @@ impl<'a> SurfaceDual<'a> {
         staying: usize,
         topology: Triangulation,
     ) -> Result<Self> {
-        let planes = places.iter().map(|place| TangentPlane::new(input.normal(place))).collect();
-        let facing = places.iter().map(|place| input.facing(place)).collect();
+        let seen = |place: &Place| (TangentPlane::new(input.normal(place)), input.facing(place));
+        let (planes, facing) = places.par_iter().with_min_len(256).map(seen).unzip();
         let stays = |v: u32| (v as usize) < staying || topology.is_border_vertex(VertexId(v));
         let kind = |v: u32| if stays(v) { Kind::Corner(v) } else { Kind::Free };
         let kinds = (0..places.len() as u32).map(kind).collect();
@@ -116,7 +129,7 @@ impl<'a> SurfaceDual<'a> {
         let ratio = factor / self.factor;
         self.factor = factor;
         if !(1.0 / ALIKE..=ALIKE).contains(&ratio) {
-            self.forget_lengths(self.topology().edges().collect());
+            self.state.topology.forget_lengths(|_| true);
             return self.measure_all();
         }
         self.state.locals.par_iter_mut().with_min_len(1024).for_each(|local| *local = local.times(ratio));
@@ -126,12 +139,6 @@ impl<'a> SurfaceDual<'a> {
 
     fn measure_all(&mut self) -> Result<()> {
         self.measure_each(|_, _| true, |_, field| LocalMetric::at(field, Point::default()))
-    }
-
-    fn forget_lengths(&mut self, edges: Vec<HalfEdge>) {
-        for h in edges {
-            self.state.topology.set_length(h, f64::NAN);
-        }
     }
 
     pub(super) fn position(&self, v: VertexId) -> Point3 {
@@ -223,9 +230,9 @@ impl<'a> SurfaceDual<'a> {
 
     /// Edges that are free to be as long as the metric wants: not between seeds that stay. All, if there are none.
     fn free_edges(&self) -> Vec<HalfEdge> {
-        let is_free = |h: &HalfEdge| self.topology().ends(*h).iter().any(|&v| self.kind(v) == Kind::Free);
-        let edges: Vec<HalfEdge> = self.topology().edges().filter(is_free).collect();
-        if edges.is_empty() { self.topology().edges().collect() } else { edges }
+        let topology = self.topology();
+        let edges = topology.edges_with(|h| topology.ends(h).iter().any(|&v| self.kind(v) == Kind::Free));
+        if edges.is_empty() { topology.edges_with(|_| true) } else { edges }
     }
 
     /// The geometric mean of the lengths of edges that are free, but for those between seeds that have come to one place.
@@ -269,7 +276,10 @@ impl<'a> SurfaceDual<'a> {
         self.state.places[v.index()] = place;
         self.state.planes[v.index()] = self.state.planes[v.index()].turned(normal);
         self.state.facing[v.index()] = normal;
-        self.forget_lengths(self.topology().star(v).flat_map(|h| [h, h.prev()]).collect());
+        let around: Vec<HalfEdge> = self.topology().star(v).flat_map(|h| [h, h.prev()]).collect();
+        for h in around {
+            self.state.topology.set_length(h, f64::NAN);
+        }
         true
     }
 
@@ -384,17 +394,14 @@ impl Moving for SurfaceDual<'_> {
                 (*place, *plane, *facing) = (landing.place, plane.turned(landing.normal), landing.normal);
             }
         });
-        let has_moved = |h: &HalfEdge| topology.ends(*h).iter().any(|v| moving[v.index()]);
-        let edges: Vec<HalfEdge> = topology.edges().filter(has_moved).collect();
-        self.forget_lengths(edges);
+        topology.forget_lengths(|ends| ends.iter().any(|v| moving[v.index()]));
         moves.iter().map(|(v, _)| moving[v.index()]).collect()
     }
 
     /// Lengths of edges that a rough metric makes slow to measure, where they are not known.
     fn measure(&mut self) {
         let topology = self.topology();
-        let is_due = |&h: &HalfEdge| topology.length(h).is_nan() && self.is_rough(topology.ends(h));
-        let edges: Vec<HalfEdge> = topology.edges().filter(is_due).collect();
+        let edges = topology.edges_with(|h| topology.length(h).is_nan() && self.is_rough(topology.ends(h)));
         let length = |&h: &HalfEdge| self.chord_length(topology.ends(h));
         let lengths: Vec<f64> = edges.par_iter().with_min_len(64).map(length).collect();
         for (h, length) in edges.into_iter().zip(lengths) {
@@ -409,11 +416,17 @@ impl Moving for SurfaceDual<'_> {
     }
 
     fn save(&self) -> State {
-        self.state.clone()
+        let mut saved = State::default();
+        self.save_over(&mut saved);
+        saved
+    }
+
+    fn save_over(&self, saved: &mut State) {
+        saved.copy_from(&self.state);
     }
 
     fn take_back(&mut self, saved: &State) {
-        self.state.clone_from(saved);
+        self.state.copy_from(saved);
     }
 
     fn moved_since(&self, saved: &State, v: VertexId) -> Vector {

@@ -2,14 +2,13 @@
 //! from the expansions at both ends; where the metric is rough, by Simpson's rule.
 
 use super::margin::KINKS;
-use super::moving::sites;
-use super::on_surface::{FOLDED, SurfaceDual, SurfaceSite, UPRIGHT};
+use super::on_surface::{FOLDED, SurfaceDual, UPRIGHT};
 use super::{LIMIT, Moving, POOR, TIE};
 use crate::geodesic::{Length, Margin, hermite_between, margin_of_estimates};
 use crate::geometry::NEEDLE;
 use crate::in_circle::Quad;
 use crate::parallel::prelude::*;
-use crate::triangulation::{Flipping, HalfEdge, Lawson, Rounds, Triangulation, VertexId, flip_in_rounds};
+use crate::triangulation::{Flipping, HalfEdge, Lawson, Rounds, Triangulation, VertexId, flip_from, flip_in_rounds};
 
 /// Rounds of flips that unfold or round off, at most.
 const ROUNDS: usize = 64;
@@ -26,14 +25,15 @@ impl SurfaceDual<'_> {
     /// The margins of all edges that may flip; each edge is measured once, for it is a side of five quads.
     fn margins(&self) -> Vec<(HalfEdge, Margin)> {
         let topology = self.topology();
-        let edges: Vec<HalfEdge> = topology.edges().collect();
-        let found: Vec<Length> = edges.par_iter().with_min_len(64).map(|&h| self.estimate(topology.ends(h))).collect();
-        let mut lengths = vec![Length { value: f64::NAN, error: f64::INFINITY }; 3 * topology.face_slots()];
-        for (&h, length) in edges.iter().zip(found) {
-            topology.sides(h).for_each(|side| lengths[side.index()] = length);
-        }
-        let free = edges.into_par_iter().with_min_len(256).filter(|&h| !topology.is_fixed(h));
-        free.map(|h| (h, self.margin_by(h, |side| lengths[side.index()]))).collect()
+        let measured = |slot: u32| {
+            let h = HalfEdge(slot);
+            let is_edge = topology.is_face(h.face()) && topology.canonical(h) == h;
+            if is_edge { self.estimate(topology.ends(h)) } else { Length { value: f64::NAN, error: f64::INFINITY } }
+        };
+        let slots = (0..3 * topology.face_slots() as u32).into_par_iter().with_min_len(64);
+        let lengths: Vec<Length> = slots.map(measured).collect();
+        let free = topology.edges_with(|h| !topology.is_fixed(h)).into_par_iter().with_min_len(256);
+        free.map(|h| (h, self.margin_by(h, |side| lengths[topology.canonical(side).index()]))).collect()
     }
 
     /// Flips an edge, if that leaves a triangulation; says whether it did.
@@ -55,7 +55,7 @@ impl SurfaceDual<'_> {
     /// Flips by a test of the caller's: every edge with a certainly negative margin whose flip the surface allows. Returns the
     /// number of flips.
     pub(crate) fn settle_by(&mut self, test: impl Fn(&Quad) -> Margin) -> u64 {
-        let edges: Vec<HalfEdge> = self.topology().edges().collect();
+        let edges = self.topology().edges_with(|_| true);
         self.flip_by(edges, |dual, h| dual.certain(h, &test))
     }
 
@@ -119,17 +119,19 @@ impl SurfaceDual<'_> {
     }
 
     /// Flips edges of triangles that are nearly flat, as those of a mesh are measured, whatever lengths say, as long as the worse of
-    /// the two gets better. Returns the number of flips.
-    pub(crate) fn round_off(&mut self) -> u64 {
-        let sites = sites(self);
-        flip_in_rounds(&mut Improving { dual: self, by: |dual: &Self, h| dual.rounding(&sites, h) }, ROUNDS)
+    /// the two gets better; of these edges, and what follows from them. Returns the number of flips.
+    pub(crate) fn round_off(&mut self, edges: Vec<HalfEdge>) -> u64 {
+        flip_from(&mut Improving { dual: self, by: Self::rounding }, edges, ROUNDS)
     }
 
     /// The quality of the worse triangle of an edge, where it is poor and better after a flip.
-    fn rounding(&self, sites: &[SurfaceSite], h: HalfEdge) -> Option<f64> {
+    fn rounding(&self, h: HalfEdge) -> Option<f64> {
+        let quad = self.topology().quad(h)?;
+        let sites = quad.map(|v| self.site(v));
         let Flip { now, then } = self.flip_of(h)?;
+        let site = |v: VertexId| sites[quad.iter().position(|&w| w == v).unwrap_or(0)];
         let worse = |pair: [[VertexId; 3]; 2]| {
-            pair.map(|corners| self.quality(corners.map(|v| sites[v.index()]))).into_iter().fold(1.0, f64::min)
+            pair.map(|corners| self.quality(corners.map(site))).into_iter().fold(1.0, f64::min)
         };
         let before = worse(now);
         let may_flip = || self.leaning(then).upright >= self.leaning(now).upright.min(UPRIGHT);
@@ -279,7 +281,8 @@ mod tests {
         let triangles = [[0, 1, 2], [0, 2, 3], [2, 1, 3], [0, 4, 1]];
         let topology = Triangulation::from_triangles(5, &triangles, &[0; 4]);
         let mut dual = SurfaceDual::new(&input, &metric, 1.0, places, 0, topology).unwrap();
-        assert_eq!((dual.round_off(), dual.round_off()), (1, 0));
+        let mut round_off = || dual.round_off(dual.topology().edges().collect());
+        assert_eq!((round_off(), round_off()), (1, 0));
         let least = dual.triangles().into_iter().map(|t| dual.quality(t.map(|v| dual.site(VertexId(v)))));
         assert!(least.fold(1.0, f64::min) > 0.5);
     }

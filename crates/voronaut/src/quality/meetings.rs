@@ -106,7 +106,7 @@ impl Excused {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::quality::{faulty_triangles, validity, validity_on};
+    use crate::quality::{examined_on, validity, validity_on};
 
     /// Two squares of n by n cells that cross along the line x = 0.5, z = 0.
     fn crossing(n: u32) -> Mesh {
@@ -131,12 +131,12 @@ mod tests {
     fn a_mesh_may_meet_itself_where_its_surface_does() {
         let (surface, mesh) = (Meetings::of(crossing(4)), crossing(7));
         assert!(surface.count() > 0 && !validity(&mesh).valid);
-        let found = validity_on(&mesh, &surface);
+        let (found, faulty) = examined_on(&mesh, &surface);
         assert!(found.valid && found.overlaps == 0 && found.meetings.count > 0, "{found:?}");
         let first = found.meetings.first.unwrap();
         let at = first.coordinates();
         assert!((at[0] - 0.51).abs() < 0.2 && at[2].abs() < 0.2, "{at:?}");
-        assert!(faulty_triangles(&mesh, &surface).is_empty());
+        assert!(faulty.is_empty());
     }
 
     #[test]
@@ -144,8 +144,9 @@ mod tests {
         let mut mesh = crossing(7);
         // A vertex of the flat sheet far from the line is pulled over its neighbours.
         mesh.points[9] = [0.5 / 7.0, 2.9 / 7.0, 0.0];
-        let found = validity_on(&mesh, &Meetings::of(crossing(4)));
+        let (found, faulty) = examined_on(&mesh, &Meetings::of(crossing(4)));
         assert!(!found.valid && found.overlaps > 0 && found.meetings.count > 0, "{found:?}");
+        assert!(!faulty.is_empty() && faulty.iter().all(|&t| t < 2 * 7 * 7), "{faulty:?}");
         let of_flat = validity_on(&crossing(7), &Meetings::of(Mesh { triangles: vec![[0, 1, 6]], ..crossing(4) }));
         assert!(!of_flat.valid, "a surface that does not meet itself excuses nothing");
     }

@@ -34,5 +34,5 @@ pub use surface_quality::surface_quality;
 pub use unmet::{
     Cause, CauseFigures, Needle, Needles, Unmet, UnmetEdge, UnmetFigures, WorstEdge, surface_unmet, unmet,
 };
-pub(crate) use validity::faulty_triangles;
+pub(crate) use validity::examined_on;
 pub use validity::{Validity, check, validity, validity_on};

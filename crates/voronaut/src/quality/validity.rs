@@ -70,17 +70,23 @@ fn is_zero(count: &usize) -> bool {
 
 /// Examines a mesh in O(n log n). Never fails: what is wrong is in the answer.
 pub fn validity(mesh: &Mesh) -> Validity {
-    examine(mesh, None)
+    examine(mesh, None).0
 }
 
 /// As [`validity`], of the mesh of a surface: it may meet itself where the surface does, within the longest edge there, and
 /// vertices may be at one position ([`Validity::meetings`]).
 pub fn validity_on(mesh: &Mesh, surface: &Meetings) -> Validity {
+    examined_on(mesh, surface).0
+}
+
+/// The same, and the triangles at which a surface has to be meshed anew, in order: those that are flat, have an edge or a vertex that is not
+/// manifold, or meet another one where the surface does not meet itself.
+pub(crate) fn examined_on(mesh: &Mesh, surface: &Meetings) -> (Validity, Vec<u32>) {
     examine(mesh, Some(surface))
 }
 
-fn examine(mesh: &Mesh, surface: Option<&Meetings>) -> Validity {
-    let mut found = Validity::default();
+fn examine(mesh: &Mesh, surface: Option<&Meetings>) -> (Validity, Vec<u32>) {
+    let (mut found, mut faulty) = (Validity::default(), Vec::new());
     found.examine_numbers(mesh);
     if found.out_of_range == 0 {
         // A flat surface may face either way, and meet itself.
@@ -88,7 +94,7 @@ fn examine(mesh: &Mesh, surface: Option<&Meetings>) -> Validity {
         let (edges, duplicates) = join(|| Edges::of(&mesh.triangles), || duplicates(mesh));
         found.examine_vertices(mesh, duplicates, surface);
         if mesh.curved.is_none() || !is_planar {
-            found.examine_triangles(mesh, is_planar);
+            faulty.extend(found.examine_triangles(mesh, is_planar));
         }
         if mesh.curved.is_some() {
             found.examine_curved(mesh, is_planar);
@@ -96,20 +102,21 @@ fn examine(mesh: &Mesh, surface: Option<&Meetings>) -> Validity {
         if mesh.curved.is_some() && is_planar {
             found.examine_sides(mesh, &edges);
         }
-        found.examine_edges(mesh, &edges);
+        faulty.extend(found.examine_edges(mesh, &edges));
         if is_planar && mesh.curved.is_none() {
             if found.first_fault.is_none() {
                 found.examine_embedding(mesh, &edges);
             }
         } else if !is_planar {
-            found.examine_fans(mesh, &edges);
-            if found.inverted == 0 && found.not_finite == 0 {
-                found.examine_contacts(mesh, surface);
-            }
+            let may_meet = found.inverted == 0 && found.not_finite == 0;
+            let (met, split) =
+                join(|| if may_meet { pairs(mesh) } else { Vec::new() }, || split_vertices(mesh, &edges));
+            faulty.extend(found.examine_fans(mesh, &split));
+            faulty.extend(found.examine_contacts(mesh, met, surface));
         }
     }
     found.valid = found.first_fault.is_none();
-    found
+    (found, distinct(faulty))
 }
 
 /// Nothing for a valid mesh (see [`validity`]).
@@ -200,25 +207,28 @@ impl Validity {
         self.unused_vertices = used.iter().filter(|&&used| !used).count();
     }
 
-    fn examine_triangles(&mut self, mesh: &Mesh, planar: bool) {
+    /// Which are inverted or flat.
+    fn examine_triangles(&mut self, mesh: &Mesh, planar: bool) -> Vec<u32> {
         let area = |&t: &[u32; 3]| {
             let ([a, b, c], [p, q, r]) = (mesh.corners_of(t), mesh.positions_of(t));
             0.5 * if planar { (b - a).cross(c - a) } else { (q - p).cross(r - p).norm() }
         };
         self.area = mesh.triangles.iter().map(area).sum();
-        let wrong = |&[a, b, c]: &[u32; 3]| {
+        let wrong = |&t: &u32| {
+            let [a, b, c] = mesh.triangles[t as usize];
             let [p, q, r] = mesh.corners_of([a, b, c]);
             let is_wrong = || orientation(p, q, r) != Orientation::Left;
             a == b || b == c || c == a || if planar { is_wrong() } else { is_flat(mesh.positions_of([a, b, c])) }
         };
-        let inverted: Vec<usize> =
-            (0..mesh.triangles.len()).into_par_iter().filter(|&t| wrong(&mesh.triangles[t])).collect();
+        let inverted: Vec<u32> = (0..mesh.triangles.len() as u32).into_par_iter().filter(wrong).collect();
         self.inverted = inverted.len();
         if let Some(&t) = inverted.first() {
-            let [a, b, c] = mesh.triangles[t].map(|v| u64::from(v) + 1);
+            let corners = mesh.triangles[t as usize];
+            let [a, b, c] = corners.map(|v| u64::from(v) + 1);
             let what = format!("triangle {} (vertices {a} {b} {c}) is inverted or flat", t + 1);
-            self.fault_at(what, mesh, &mesh.triangles[t]);
+            self.fault_at(what, mesh, &corners);
         }
+        inverted
     }
 
     fn examine_curved(&mut self, mesh: &Mesh, is_planar: bool) {
@@ -251,13 +261,14 @@ impl Validity {
         }
     }
 
-    fn examine_edges(&mut self, mesh: &Mesh, edges: &Edges) {
+    /// Triangles with an edge that is not manifold.
+    fn examine_edges(&mut self, mesh: &Mesh, edges: &Edges) -> Vec<u32> {
         let used = mesh.points.len() - self.unused_vertices;
         let count = || (edges.ends().count(), edges.not_manifold().collect::<Vec<_>>());
         let ((count, wrong), loops) = join(count, || boundary_loops(edges));
         (self.euler, self.boundary_loops) =
             (used.cast_signed() - count.cast_signed() + mesh.triangles.len().cast_signed(), loops);
-        for sides in wrong {
+        for sides in &wrong {
             self.non_manifold_edges += 1;
             let ([a, b], count) = (sides[0].ends, sides.len());
             let what =
@@ -269,24 +280,32 @@ impl Validity {
             let what = format!("labelled edge {number} (vertices {} {}) is no edge of a triangle", a + 1, b + 1);
             self.fault_at(what, mesh, &[a, b]);
         }
+        wrong.into_iter().flatten().map(|side| side.triangle() as u32).collect()
     }
 
-    fn examine_fans(&mut self, mesh: &Mesh, edges: &Edges) {
-        for v in split_vertices(mesh, edges) {
+    /// Triangles at vertices that are split.
+    fn examine_fans(&mut self, mesh: &Mesh, split: &[u32]) -> Vec<u32> {
+        for &v in split {
             self.non_manifold_vertices += 1;
             self.fault_at(format!("the triangles around vertex {} are not one fan", v + 1), mesh, &[v]);
         }
+        let has_split = |t: &[u32; 3]| !split.is_empty() && t.iter().any(|v| split.binary_search(v).is_ok());
+        (0..).zip(&mesh.triangles).filter(|(_, t)| has_split(t)).map(|(i, _)| i).collect()
     }
 
-    fn examine_contacts(&mut self, mesh: &Mesh, surface: Option<&Meetings>) {
-        for pair in pairs(mesh) {
+    /// Triangles that meet where the surface does not meet itself.
+    fn examine_contacts(&mut self, mesh: &Mesh, met: Vec<Pair>, surface: Option<&Meetings>) -> Vec<u32> {
+        let mut faulty = Vec::new();
+        for pair in met {
             if surface.is_some_and(|surface| pair.is_excused(mesh, surface)) {
                 self.meetings.add(pair.at);
                 continue;
             }
             self.overlaps += 1;
             self.first_fault.get_or_insert(pair.fault());
+            faulty.extend(pair.triangles.map(|t| t as u32));
         }
+        faulty
     }
 
     fn examine_embedding(&mut self, mesh: &Mesh, edges: &Edges) {
@@ -298,27 +317,11 @@ impl Validity {
     }
 }
 
-/// The triangles of a surface's mesh that are flat, have an edge or a vertex that is not manifold, or meet another one where the
-/// surface does not meet itself; in order. [`validity_on`] says what is wrong with the mesh; this says where
-/// it has to be made anew.
-pub(crate) fn faulty_triangles(mesh: &Mesh, surface: &Meetings) -> Vec<u32> {
-    let flat = |t: &u32| is_flat(mesh.positions_of(mesh.triangles[*t as usize]));
-    let mut faulty: Vec<u32> = (0..mesh.triangles.len() as u32).filter(flat).collect();
-    if faulty.is_empty() {
-        let of_ours = |pair: &Pair| !pair.is_excused(mesh, surface);
-        faulty
-            .extend(pairs(mesh).iter().filter(|pair| of_ours(pair)).flat_map(|pair| pair.triangles).map(|t| t as u32));
-    }
-    let edges = Edges::of(&mesh.triangles);
-    faulty.extend(edges.not_manifold().flatten().map(|side| side.triangle() as u32));
-    let split = split_vertices(mesh, &edges);
-    let has_split = |t: &[u32; 3]| t.iter().any(|v| split.binary_search(v).is_ok());
-    faulty.extend((0..).zip(&mesh.triangles).filter(|(_, t)| has_split(t)).map(|(i, _)| i));
-    distinct(faulty)
-}
-
 /// Cycles of the boundary: from each boundary half-edge on through the fan of triangles at its end.
 fn boundary_loops(edges: &Edges) -> usize {
+    if edges.boundary().next().is_none() {
+        return 0;
+    }
     let twins = edges.twins();
     let mut seen = vec![false; twins.len()];
     let mut loops = 0;

@@ -2,7 +2,7 @@
 
 use super::curved::{curve_onto, demand_possible_on};
 use super::settle::Stopwatch;
-use super::surface_pass::{Pass, Reseed, Setting, demand};
+use super::surface_pass::{Checked, Pass, Reseed, Setting, demand};
 use super::{Idle, MeshOptions, Meshed, Origin, Seeding, Task, closed_form_scale, protection};
 use crate::dual::Moving;
 use crate::error::{Error, Result};
@@ -180,30 +180,29 @@ impl<'a> Setting<'a> {
     fn meshed(&self, count: usize, scale: f64) -> Result<(Meshed, Option<SurfaceFidelity>)> {
         let mut reseed = Reseed::default();
         let mut notes = Vec::new();
-        let (mut pass, mut mesh, faulty_count) = loop {
+        let (mut pass, mut checked) = loop {
             let Some(mut pass) = self.passed(count, scale, &mut reseed)? else { continue };
-            let (mut mesh, mut faulty) = self.checked(&pass)?;
-            if faulty.is_empty() && self.steps(&reseed).is_some() && self.settle_edges(&mut pass)? {
-                (mesh, faulty) = self.checked(&pass)?;
+            let mut checked = self.checked(&pass)?;
+            if checked.faulty.is_empty() && self.steps(&reseed).is_some() && self.settle_edges(&mut pass)? {
+                checked = self.checked(&pass)?;
             }
-            if faulty.is_empty() && self.steps(&reseed).is_none() {
-                mesh = self.without_needles(&mut pass, mesh)?;
+            if checked.faulty.is_empty() && self.steps(&reseed).is_none() {
+                checked = self.without_needles(&mut pass, checked)?;
             }
-            if faulty.is_empty() || reseed.is_last {
-                break (pass, mesh, faulty.len());
+            if checked.faulty.is_empty() || reseed.is_last {
+                break (pass, checked);
             }
-            reseed = pass.reseed(&faulty, reseed);
+            reseed = pass.reseed(&checked.faulty, reseed);
             reseed.is_last = reseed.rounds + 1 >= self.farthest_passes() + ADAPTATIONS;
         };
-        let polished = match self.aim.filter(|_| faulty_count == 0 && self.polishes()) {
-            Some((function, norm)) => Some(self.polished(&mut pass, &mut mesh, function, norm, &mut notes)?),
+        let is_sound = checked.faulty.is_empty();
+        let polished = match self.aim.filter(|_| is_sound && self.polishes()) {
+            Some((function, norm)) => Some(self.polished(&mut pass, &mut checked, function, norm, &mut notes)?),
             None => None,
         };
-        let protected = match faulty_count {
-            0 => self.protect(&mut pass, &mut mesh, &mut notes)?,
-            _ => None,
-        };
-        let validity = demand(self.input, &mesh, self.meetings)?;
+        let protected = if is_sound { self.protect(&mut pass, &mut checked, &mut notes)? } else { None };
+        let Checked { mesh, validity, .. } = checked;
+        demand(self.input, &mesh, &validity)?;
         let (surface_net, protection) = match protected {
             Some((net, protection)) => (Some(net), Some(protection)),
             None => (self.options.net.then(|| self.net(&pass)), None),
@@ -258,28 +257,26 @@ impl<'a> Setting<'a> {
         }
     }
 
-    /// The mesh of a pass, and its triangles that make it none.
-    pub(super) fn checked(&self, pass: &Pass) -> Result<(Mesh, Vec<u32>)> {
-        let mesh = pass.mesh();
-        let faulty = self.watch.time("check", || {
+    /// The mesh of a pass, and what is found of it.
+    pub(super) fn checked(&self, pass: &Pass) -> Result<Checked> {
+        self.watch.time("check", || {
             self.progress.begin("checking", 1)?;
-            Ok(pass.faulty(&mesh, self.meetings))
-        })?;
-        Ok((mesh, faulty))
+            Ok(pass.checked(self.meetings))
+        })
     }
 
     /// The mesh of a pass that was not relaxed, its needles mended where that is still a mesh.
-    fn without_needles(&self, pass: &mut Pass, mesh: Mesh) -> Result<Mesh> {
+    fn without_needles(&self, pass: &mut Pass, checked: Checked) -> Result<Checked> {
         let before = pass.dual.save();
         if !pass.mend_needles() {
-            return Ok(mesh);
+            return Ok(checked);
         }
-        let (mended, faulty) = self.checked(pass)?;
-        if faulty.is_empty() {
+        let mended = self.checked(pass)?;
+        if mended.faulty.is_empty() {
             return Ok(mended);
         }
         pass.dual.take_back(&before);
-        Ok(mesh)
+        Ok(checked)
     }
 
     /// Whether a mesh for a function is polished, which would undo protection.
@@ -291,7 +288,7 @@ impl<'a> Setting<'a> {
     fn polished(
         &self,
         pass: &mut Pass,
-        mesh: &mut Mesh,
+        checked: &mut Checked,
         function: &Expression,
         norm: Norm,
         notes: &mut Vec<String>,
@@ -303,19 +300,19 @@ impl<'a> Setting<'a> {
             self.progress.begin("polishing", sweeps as u64)?;
             polish_on_surface(&mut pass.dual, function, norm, patience, self.progress)
         })?;
-        let (better, faulty) = self.checked(pass)?;
+        let (better, mesh) = (self.checked(pass)?, &checked.mesh);
         let stray = |mesh: &Mesh| (self.input.surface.area() - area(mesh)).abs();
-        let is_as_near = stray(&better) <= NEARLY * stray(mesh) + ROUNDING * self.input.surface.area();
+        let is_as_near = stray(&better.mesh) <= NEARLY * stray(mesh) + ROUNDING * self.input.surface.area();
         // Polishing takes the surface to be smooth between vertices.
         let error = |mesh: &Mesh| Ok(interpolation_error_on(mesh, self.input, function, polishing_norm(norm))?.norm);
-        let why = if !faulty.is_empty() {
-            format!("{} triangles would meet or fold over", faulty.len())
+        let why = if !better.faulty.is_empty() {
+            format!("{} triangles would meet or fold over", better.faulty.len())
         } else if !is_as_near {
             "where the function is even, triangles would be too large for the surface".into()
-        } else if error(&better)? > error(mesh)? {
+        } else if error(&better.mesh)? > error(mesh)? {
             "between vertices the surface is too uneven to say how the function goes there".into()
         } else {
-            *mesh = better;
+            *checked = better;
             return Ok(polished);
         };
         pass.dual.take_back(&before);

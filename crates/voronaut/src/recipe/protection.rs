@@ -1,7 +1,7 @@
 //! Protected seeds: the last moves, and what the report says of the net.
 
 use super::dual::compared;
-use super::surface_pass::{Pass, Setting};
+use super::surface_pass::{Checked, Pass, Setting};
 use super::{Job, MeshOptions, Seeding};
 use crate::canvas::{self, Canvas};
 use crate::diagram::{Diagram, RESOLVE_ROUNDS, SurfaceDiagram, resolve};
@@ -11,7 +11,6 @@ use crate::error::{Error, Result};
 use crate::figures;
 use crate::geodesic::Method;
 use crate::geometry::Point;
-use crate::mesh::Mesh;
 use crate::net::{Ball, Net};
 use crate::optimise::{Ending, Protected, measured, measured_on_surface, protect, protect_on_surface};
 use crate::surface::Place;
@@ -94,7 +93,7 @@ impl<'a> Setting<'a> {
     pub(super) fn protect(
         &self,
         pass: &mut Pass<'a>,
-        mesh: &mut Mesh,
+        checked: &mut Checked,
         said: &mut Vec<String>,
     ) -> Result<Option<(Net<Place>, figures::Protection)>> {
         if self.options.seeding != Seeding::Protected {
@@ -104,9 +103,9 @@ impl<'a> Setting<'a> {
         let before = pass.dual.save();
         let protect = || protect_on_surface(&mut pass.dual, self.options.protection, self.progress);
         let mut protected = self.watch.time("protect", protect)?;
-        let (better, faulty) = self.checked(pass)?;
-        if faulty.is_empty() {
-            *mesh = better;
+        let better = self.checked(pass)?;
+        if better.faulty.is_empty() {
+            *checked = better;
             if self.options.dual != Road::Canvas {
                 // What is told of its edges is of those that are there now.
                 self.settle_edges(pass)?;
@@ -115,7 +114,7 @@ impl<'a> Setting<'a> {
             pass.dual.take_back(&before);
             protected.net = measured_on_surface(&pass.dual);
             (protected.ending, protected.unprotected[1]) = (Ending::Stalled, protected.unprotected[0]);
-            said.push(format!("not protected: {} triangles would meet or fold over", faulty.len()));
+            said.push(format!("not protected: {} triangles would meet or fold over", better.faulty.len()));
         }
         self.progress.begin("comparing with a canvas", 1)?;
         let nerve = self.watch.time("raw_nerve", || self.raw_nerve(pass, &protected.net))?;

@@ -10,7 +10,7 @@ use crate::dual::{Moving, Road, SurfaceDual};
 use crate::error::{Error, Result};
 use crate::figures;
 use crate::geometry::Point3;
-use crate::lists::in_order;
+use crate::lists::{distinct, in_order};
 use crate::mesh::Mesh;
 use crate::metric::{Expression, Norm};
 use crate::optimise::{Cells, Mending, Patience, Relaxed, relax};
@@ -87,6 +87,15 @@ pub(super) struct Pass<'a> {
     owners: Vec<u32>,
     pub(super) relaxed: Relaxed,
     pub(super) settled: Settled,
+}
+
+/// The mesh of a pass.
+pub(super) struct Checked {
+    pub(super) mesh: Mesh,
+    /// What is found of it.
+    pub(super) validity: Validity,
+    /// The triangles that make it none, are folded over, or have a border that is of no patch.
+    pub(super) faulty: Vec<u32>,
 }
 
 /// Where the passes before made no mesh.
@@ -361,7 +370,7 @@ impl Pass<'_> {
     }
 
     /// One mesh of all patches; its triangles are in the order of the dual's.
-    pub(super) fn mesh(&self) -> Mesh {
+    fn mesh(&self) -> Mesh {
         self.patched().mesh(self.dual.places(), &self.dual.triangles())
     }
 
@@ -369,13 +378,22 @@ impl Pass<'_> {
     pub(super) fn mend_needles(&mut self) -> bool {
         let (mut mending, mut changes) = (Mending::default(), 0);
         for _ in 0..MENDINGS {
-            changes += self.dual.round_off() + mending.needles(&mut self.dual) as u64;
+            let needles = mending.edges_of_needles(&self.dual);
+            changes += self.dual.round_off(needles) + mending.needles(&mut self.dual) as u64;
         }
         changes > 0
     }
 
-    /// The triangles at which it is no mesh, or that are folded over, or whose border is that of no patch.
-    pub(super) fn faulty(&self, mesh: &Mesh, meetings: &Meetings) -> Vec<u32> {
+    /// Its mesh, and what is found of that.
+    pub(super) fn checked(&self, meetings: &Meetings) -> Checked {
+        let mesh = self.mesh();
+        let (validity, faulty) = quality::examined_on(&mesh, meetings);
+        let faulty = distinct(faulty.into_iter().chain(self.astray()));
+        Checked { mesh, validity, faulty }
+    }
+
+    /// The triangles that are folded over, or whose border is that of no patch.
+    fn astray(&self) -> Vec<u32> {
         let topology = self.dual.topology();
         let features: BTreeSet<[u32; 2]> = self.features.edges.iter().map(|edge| in_order(edge.ends)).collect();
         let strays = |h: HalfEdge| {
@@ -383,9 +401,7 @@ impl Pass<'_> {
             topology.twin(h).is_none() && !features.contains(&in_order(ends))
         };
         let is_wrong = |f: FaceId| self.dual.is_folded(f) || f.half_edges().into_iter().any(strays);
-        let wrong = (0..).zip(topology.faces()).filter(|&(_, f)| is_wrong(f)).map(|(i, _)| i);
-        let faulty: BTreeSet<u32> = quality::faulty_triangles(mesh, meetings).into_iter().chain(wrong).collect();
-        faulty.into_iter().collect()
+        (0..).zip(topology.faces()).filter(|&(_, f)| is_wrong(f)).map(|(i, _)| i).collect()
     }
 
     /// What to do differently: more of the surface kept around faulty triangles, more seeds on the curves that one touches.
@@ -435,14 +451,13 @@ impl Pass<'_> {
     }
 }
 
-/// What is found of a valid mesh of the surface's topology with all that is required.
+/// That a mesh of which this is found is valid, has the surface's topology, and all that is required.
 ///
 /// # Errors
 /// [`Error::Mesh`] with the first fault.
-pub(super) fn demand(input: &Input, mesh: &Mesh, meetings: &Meetings) -> Result<Validity> {
+pub(super) fn demand(input: &Input, mesh: &Mesh, found: &Validity) -> Result<()> {
     let help = "ask for more vertices (`vertices`); please report this with the input";
     let fault = |what: &str, place: String| Err(Error::mesh(what, place, help));
-    let found = quality::validity_on(mesh, meetings);
     if let Some(found) = &found.first_fault {
         return fault(&found.what, found.place.clone());
     }
@@ -457,7 +472,7 @@ pub(super) fn demand(input: &Input, mesh: &Mesh, meetings: &Meetings) -> Result<
     if mesh.required_triangles.len() < input.surface.required_triangles().len() {
         return fault("a required triangle is not in the mesh", "the mesh".into());
     }
-    Ok(found)
+    Ok(())
 }
 
 fn no_features() -> Error {
@@ -470,9 +485,9 @@ fn mend(dual: &mut SurfaceDual) {
     let poor = (dual.topology().face_count() as f64 * MENDED_SHARE).ceil() as usize;
     let mut mending = Mending::default();
     for _ in 0..MENDINGS {
-        dual.round_off();
+        dual.round_off(mending.edges_of_needles(dual));
         mending.worst(dual, poor);
         mending.needles(dual);
     }
-    dual.round_off();
+    dual.round_off(mending.edges_of_needles(dual));
 }

@@ -98,8 +98,13 @@ pub(crate) trait Rounds {
 
 /// Flips edges, and what follows from them, in rounds, so many at most, until no edge is wanted. Returns the number of flips.
 pub(crate) fn flip_in_rounds(mesh: &mut impl Rounds, rounds: usize) -> u64 {
+    let edges = mesh.topology().edges_with(|_| true);
+    flip_from(mesh, edges, rounds)
+}
+
+/// The same of some edges, and what follows from them.
+pub(crate) fn flip_from(mesh: &mut impl Rounds, mut edges: Vec<HalfEdge>, rounds: usize) -> u64 {
     let mut flips = 0;
-    let mut edges: Vec<HalfEdge> = mesh.topology().edges().collect();
     for _ in 0..rounds {
         let mut wanted = mesh.wanted(&edges);
         wanted.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));

@@ -12,11 +12,14 @@ mod renumber;
 pub(crate) use check::Broken;
 pub use ids::{Constraint, FaceId, HalfEdge, VertexId};
 pub use lawson::Limit;
-pub(crate) use lawson::{Flipping, Lawson, Rounds, flip_in_rounds};
+pub(crate) use lawson::{Flipping, Lawson, Rounds, flip_from, flip_in_rounds};
 
 use crate::lists::{Rows, in_order};
-use crate::parallel::copy_over;
+use crate::parallel::{copy_over, prelude::*};
 use ids::NONE;
+
+/// Faces that are worth a thread's while.
+const FACES: usize = 256;
 
 /// A triangulation: half-edge `3 f + i` is the i-th edge of face f, counter-clockwise.
 ///
@@ -144,6 +147,12 @@ impl Triangulation {
         self.faces().flat_map(FaceId::half_edges).filter(|&h| self.twin(h).is_none_or(|t| h < t))
     }
 
+    /// Those of [`Triangulation::edges`] of which something holds, in their order; asked in parallel.
+    pub(crate) fn edges_with(&self, holds: impl Fn(HalfEdge) -> bool + Sync) -> Vec<HalfEdge> {
+        let slots = (0..self.face_slots() as u32).into_par_iter().with_min_len(FACES);
+        slots.flat_map_iter(|f| self.edges_of(FaceId(f))).filter(|&h| holds(h)).collect()
+    }
+
     /// Those of [`Triangulation::edges`] that a face slot has.
     pub(crate) fn edges_of(&self, f: FaceId) -> impl Iterator<Item = HalfEdge> + '_ {
         let edges = f.half_edges().into_iter().filter(|&h| self.canonical(h) == h);
@@ -233,7 +242,19 @@ impl Triangulation {
 
     /// Multiplies all lengths.
     pub(crate) fn stretch(&mut self, factor: f64) {
-        self.length.iter_mut().for_each(|length| *length *= factor);
+        self.length.par_iter_mut().with_min_len(3 * FACES).for_each(|length| *length *= factor);
+    }
+
+    /// Lengths between vertices of which something holds are not known any more.
+    pub(crate) fn forget_lengths(&mut self, is_changed: impl Fn([VertexId; 2]) -> bool + Sync) {
+        let faces = self.length.par_chunks_mut(3).zip(self.origin.par_chunks(3));
+        faces.with_min_len(FACES).for_each(|(lengths, corners)| {
+            for k in 0..3 {
+                if corners[k] != VertexId(NONE) && is_changed([corners[k], corners[(k + 1) % 3]]) {
+                    lengths[k] = f64::NAN;
+                }
+            }
+        });
     }
 
     /// The constraint that the edge is part of.

@@ -2,12 +2,9 @@
 //! caller's to know ([`crate::planar`]).
 
 use super::ids::NONE;
-use super::{FaceId, HalfEdge, Triangulation, VertexId};
+use super::{FACES, FaceId, HalfEdge, Triangulation, VertexId};
 use crate::lists::distinct;
 use crate::parallel::prelude::*;
-
-/// Faces that are worth a thread's while.
-const FACES: usize = 256;
 
 impl Triangulation {
     /// Which of many moves can be made all at once, by vertex slot: none of corners of faces that would turn over by what is left of

@@ -12,7 +12,7 @@ use crate::mesh::{Mesh, Network};
 use crate::metric::{Expression, Norm};
 use crate::parallel::prelude::*;
 use crate::progress::Progress;
-use crate::quality::{Meetings, Validity};
+use crate::quality::{Meetings, Validity, validity_on};
 use crate::recipe::on_surface::SurfacePlan;
 use crate::recipe::surface_pass::{Setting, demand};
 use crate::recipe::{MeshOptions, Stopwatch, mesh_surface};
@@ -114,7 +114,9 @@ impl Divisible for OnSurface<'_> {
     }
 
     fn check(&self, mesh: &Mesh) -> Result<Validity> {
-        demand(self.input, mesh, &Meetings::of(self.input.whole_mesh()))
+        let found = validity_on(mesh, &Meetings::of(self.input.whole_mesh()));
+        demand(self.input, mesh, &found)?;
+        Ok(found)
     }
 
     /// By the mean of the lengths in the metrics at both ends.

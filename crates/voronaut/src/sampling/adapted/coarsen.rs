@@ -3,6 +3,7 @@
 use super::UPRIGHT;
 use super::work::Work;
 use crate::geometry::NEEDLE;
+use crate::parallel::prelude::*;
 use crate::triangulation::{HalfEdge, VertexId};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -87,9 +88,9 @@ impl Work<'_> {
                 return;
             }
             let before = self.vertex_count();
-            let edges: Vec<HalfEdge> = self.topology.edges().collect();
-            let mut queue: BinaryHeap<Reverse<(u64, VertexId, VertexId)>> = BinaryHeap::new();
-            queue.extend(edges.into_iter().map(|h| self.topology.ends(h)).map(|[v, w]| self.entry(v, w)));
+            let edges = self.topology.edges_with(|_| true).into_par_iter().with_min_len(256);
+            let entries = edges.map(|h| self.topology.ends(h)).map(|[v, w]| self.entry(v, w));
+            let mut queue = BinaryHeap::from(entries.collect::<Vec<_>>());
             while self.vertex_count() > count
                 && let Some(Reverse((_, v, w))) = queue.pop()
             {

@@ -48,7 +48,7 @@ impl Work<'_> {
     /// Edges inside patches that are longer than so much, no more than so many, and the vertices in their middles.
     fn longest(&self, longer: f64, most: usize) -> Vec<([VertexId; 2], Option<Vertex>)> {
         let t = &self.topology;
-        let edges: Vec<HalfEdge> = t.edges().filter(|&h| t.twin(h).is_some()).collect();
+        let edges = t.edges_with(|h| t.twin(h).is_some());
         let measured = edges.into_par_iter().with_min_len(256).map(|h| (self.length_of(h), h));
         let mut long: Vec<(f64, HalfEdge)> = measured.filter(|(length, _)| *length > longer).collect();
         long.sort_by(|x, y| y.0.total_cmp(&x.0).then(x.1.cmp(&y.1)));

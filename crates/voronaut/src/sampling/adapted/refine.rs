@@ -34,10 +34,8 @@ impl Work<'_> {
 
     /// Splits edges longer than so much, no more than so many; the vertices on them.
     pub(super) fn split_once(&mut self, longer: f64, most: usize) -> Vec<VertexId> {
-        let edges: Vec<HalfEdge> = self.topology.edges().collect();
-        let edges = edges.into_par_iter().with_min_len(256);
-        let long = edges.filter(|&h| self.is_long(h, longer)).map(|h| (self.length_of(h), h));
-        let mut long: Vec<(f64, HalfEdge)> = long.collect();
+        let long = self.topology.edges_with(|h| self.is_long(h, longer)).into_par_iter().with_min_len(256);
+        let mut long: Vec<(f64, HalfEdge)> = long.map(|h| (self.length_of(h), h)).collect();
         long.sort_by(|x, y| y.0.total_cmp(&x.0).then(x.1.cmp(&y.1)));
         let middle = |&(_, h): &(f64, HalfEdge)| (h, self.topology.ends(h), self.middle(h));
         let middles: Vec<(HalfEdge, [VertexId; 2], Option<Vertex>)> =
@@ -100,7 +98,7 @@ impl Work<'_> {
 
     /// Flips edges that are not Delaunay ([`Work::margin`]), where no triangle turns away from the surface.
     pub(super) fn flip_all(&mut self) {
-        self.flip_from(self.topology.edges().collect());
+        self.flip_from(self.topology.edges_with(|_| true));
     }
 
     /// Flips edges that are not Delaunay, and what follows from them.

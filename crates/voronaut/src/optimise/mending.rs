@@ -1,0 +1,262 @@
+//! The worst triangles mended: their corners move to where the least quality of the triangles around them is greatest.
+
+use crate::dual::{Kind, Moving, sites};
+use crate::elementary::Elementary;
+use crate::geometry::{NEEDLE, Vector, from_frame};
+use crate::lists::{distinct, least_ranked, marked, ranked};
+use crate::parallel::prelude::*;
+use crate::triangulation::{FaceId, HalfEdge, VertexId};
+use std::collections::BTreeMap;
+
+/// Lengths of the moves that are tried (metric length), and directions of each.
+const LENGTHS: [f64; 4] = [0.2, 0.1, 0.05, SHORTEST];
+const SHORTEST: f64 = 0.02;
+const WAYS: usize = 12;
+/// A move must raise the least quality by this at least.
+const GAIN: f64 = 1e-3;
+/// Edges whose metric length has a logarithm of at most this size are well within the unit range.
+const UNIT: f64 = 0.3;
+/// Below this quality lengths do not count beside an edge that must stay whole and is too long: every way off it may make others worse.
+const POOR: f64 = 2.0 * NEEDLE;
+/// Moves of one seed.
+const MOVES: usize = 6;
+/// So many seeds are looked at together, on all cores, before the first of them moves.
+const TOGETHER: usize = 256;
+
+/// Moves corners of poor triangles, each to where the least quality of the triangles around it is greatest, by trial; quality as it is
+/// measured of a mesh, in the log-Euclidean mean of the tensors at the corners.
+///
+/// Relaxation equalises cells, of which a triangle beside the tip of a cape knows little. The energy may rise a little. From one call to the
+/// next the metric's factor stays, and seeds where they are; edges may be flipped.
+pub(crate) struct Mending<M: Moving> {
+    /// Of seeds that no trial was better for: where they and their neighbours were.
+    in_vain: BTreeMap<(VertexId, Lengths), Ring<M::Site>>,
+    /// The seeds' sites, by id.
+    sites: Vec<M::Site>,
+    /// Seeds that have moved since.
+    moved: Vec<VertexId>,
+    /// By slot of a face, its corners when it was measured last, and its quality.
+    faces: Vec<([VertexId; 3], f64)>,
+}
+
+/// What counts where a triangle is a needle.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Lengths {
+    /// That no edge leaves the unit range.
+    Kept,
+    /// That it is none any more.
+    AfterNeedles,
+}
+
+impl<M: Moving> Default for Mending<M> {
+    fn default() -> Self {
+        Self { in_vain: BTreeMap::new(), sites: Vec::new(), moved: Vec::new(), faces: Vec::new() }
+    }
+}
+
+impl<M: Moving> Mending<M> {
+    /// Moves the free corners of the poorest triangles, at most so many. Returns how many seeds moved.
+    pub(crate) fn worst(&mut self, dual: &mut M, most: usize) -> usize {
+        let poorest = least_ranked(self.below(dual, f64::INFINITY), most);
+        self.corners(dual, poorest, Lengths::Kept)
+    }
+
+    /// The same of all triangles that are needles, or nearly, whatever lengths become: what the mesh is measured by asks for the metric at the closest
+    /// places, and may find less.
+    pub(crate) fn needles(&mut self, dual: &mut M) -> usize {
+        let poor = ranked(self.below(dual, POOR));
+        self.corners(dual, poor, Lengths::AfterNeedles)
+    }
+
+    /// The edges of needles.
+    pub(crate) fn edges_of_needles(&mut self, dual: &M) -> Vec<HalfEdge> {
+        self.measure(dual);
+        let needles = (0..)
+            .map(FaceId)
+            .zip(&self.faces)
+            .filter(|(f, (_, quality))| dual.topology().is_face(*f) && *quality < NEEDLE);
+        distinct(needles.flat_map(|(f, _)| f.half_edges()).map(|h| dual.topology().canonical(h)))
+    }
+
+    /// The triangles of less quality, with that.
+    fn below(&mut self, dual: &M, limit: f64) -> Vec<(f64, [VertexId; 3])> {
+        self.measure(dual);
+        let faces = dual.topology().faces().map(|f| self.faces[f.index()]);
+        faces.filter(|(_, quality)| *quality < limit).map(|(corners, quality)| (quality, corners)).collect()
+    }
+
+    /// Measures triangles that have changed since the last time.
+    fn measure(&mut self, dual: &M) {
+        let topology = dual.topology();
+        let moved = marked(topology.vertex_slots(), self.moved.iter().map(|v| v.0));
+        if self.sites.is_empty() {
+            self.sites = sites(dual);
+        }
+        for v in self.moved.drain(..) {
+            self.sites[v.index()] = dual.site(v);
+        }
+        self.faces.resize(topology.face_slots(), ([VertexId(u32::MAX); 3], f64::NAN));
+        let sites = &self.sites;
+        self.faces.par_iter_mut().enumerate().with_min_len(256).for_each(|(f, (known, quality))| {
+            let f = FaceId(f as u32);
+            if topology.is_face(f) {
+                let corners = topology.corners(f);
+                if *known != corners || corners.iter().any(|v| moved[v.index()]) {
+                    (*known, *quality) = (corners, dual.quality(corners.map(|v| sites[v.index()])));
+                }
+            }
+        });
+    }
+
+    /// Moves free corners of triangles, in their order. Returns how many seeds moved.
+    ///
+    /// Many are looked at before the first one moves; one whose neighbours have changed by its turn is looked at again.
+    fn corners(&mut self, dual: &mut M, triangles: Vec<(f64, [VertexId; 3])>, lengths: Lengths) -> usize {
+        let corners = triangles.into_iter().flat_map(|(_, corners)| corners);
+        let free: Vec<VertexId> = corners.filter(|&v| dual.kind(v) == Kind::Free).collect();
+        let mut count = 0;
+        for together in free.chunks(TOGETHER) {
+            let of_one =
+                |(i, &v): (usize, &VertexId)| (!together[..i].contains(&v)).then(|| self.view(dual, v, lengths));
+            let views: Vec<Option<View<M::Site>>> =
+                together.par_iter().enumerate().with_min_len(1).map(of_one).collect();
+            let before = count;
+            for (&v, view) in together.iter().zip(views) {
+                let holds = |view: &View<M::Site>| count == before || Ring::of(dual, v) == view.ring;
+                let mut view = view.filter(holds).unwrap_or_else(|| self.view(dual, v, lengths));
+                if view.climb(dual, v) {
+                    self.moved.push(v);
+                    count += 1;
+                } else {
+                    self.in_vain.insert((v, lengths), view.ring);
+                }
+            }
+        }
+        count
+    }
+
+    /// What is around a seed, and where it would be better.
+    fn view(&self, dual: &M, v: VertexId, lengths: Lengths) -> View<M::Site> {
+        let ring = Ring::of(dual, v);
+        let limits = ring.limits(dual, v, lengths);
+        let is_in_vain = self.in_vain.get(&(v, lengths)) == Some(&ring);
+        let better = if is_in_vain { Vec::new() } else { ring.better(dual, v, limits) };
+        View { ring, limits, better }
+    }
+}
+
+/// What is around a seed.
+struct View<S> {
+    ring: Ring<S>,
+    limits: Limits,
+    /// Moves by which the least quality there is greater, the best first.
+    better: Vec<Vector>,
+}
+
+/// How far edges may leave the unit range for the sake of quality.
+#[derive(Clone, Copy)]
+struct Limits {
+    /// The greatest size of the logarithm of a length.
+    misfit: f64,
+    /// Where the least quality is below this, lengths do not count.
+    quality: f64,
+}
+
+/// A seed's place, and the triangles around it by their other corners.
+#[derive(PartialEq)]
+struct Ring<S> {
+    centre: S,
+    links: Vec<[S; 2]>,
+}
+
+impl<S: Copy + PartialEq + Send + Sync> View<S> {
+    /// Climbs from one trial to the next; says whether the seed has moved.
+    fn climb<M: Moving<Site = S>>(&mut self, dual: &mut M, v: VertexId) -> bool {
+        let mut has_moved = false;
+        for _ in 0..MOVES {
+            let known = std::mem::take(&mut self.better);
+            let better = if has_moved { self.ring.better(dual, v, self.limits) } else { known };
+            if !better.into_iter().any(|by| dual.shift_by(v, by)) {
+                break;
+            }
+            has_moved = true;
+        }
+        if has_moved {
+            dual.settle_move(v);
+        }
+        has_moved
+    }
+}
+
+impl<S: Copy + PartialEq + Send + Sync> Ring<S> {
+    fn of<M: Moving<Site = S>>(dual: &M, v: VertexId) -> Self {
+        let topology = dual.topology();
+        let link = |h: HalfEdge| [dual.ready(dual.site(topology.target(h))), dual.site(topology.apex(h))];
+        Self { centre: dual.ready(dual.site(v)), links: topology.star(v).map(link).collect() }
+    }
+
+    /// No edge may leave the unit range, or get farther out, unless needles come first, or the quality is poor beside an edge that must stay whole
+    /// and is too long.
+    fn limits<M: Moving<Site = S>>(&self, dual: &M, v: VertexId, lengths: Lengths) -> Limits {
+        let topology = dual.topology();
+        let is_long = |h: HalfEdge| {
+            let ends = topology.ends(h).map(|u| dual.site(u));
+            topology.is_fixed(h) && dual.straight_length(ends).logarithm() > UNIT
+        };
+        let is_beside = topology.star(v).any(|h| is_long(h.next()));
+        let misfits = self.links.iter().map(|&[u, _]| misfit(dual, [self.centre, u]));
+        let quality = match lengths {
+            _ if is_beside => POOR,
+            Lengths::AfterNeedles => NEEDLE,
+            Lengths::Kept => f64::NEG_INFINITY,
+        };
+        Limits { misfit: misfits.fold(UNIT, f64::max), quality }
+    }
+
+    /// Moves of the seed at the centre, from where it is now, by which the least quality is greater, the best first.
+    fn better<M: Moving<Site = S>>(&self, dual: &M, v: VertexId, limits: Limits) -> Vec<Vector> {
+        // The poorest triangle first: it tells of most trials that they are no better.
+        let here = dual.site(v);
+        let by_quality = ranked(self.links.iter().zip(0..).map(|(&[a, b], i)| (dual.quality([here, a, b]), i)));
+        let now = by_quality.first().map_or(f64::NEG_INFINITY, |&(quality, _)| quality);
+        let links: Vec<[S; 2]> = by_quality.into_iter().map(|(_, i): (f64, usize)| self.links[i]).collect();
+        // The least quality around, where that is at least so much.
+        let least = |site: S, floor: f64| {
+            links.iter().map(|&[a, b]| dual.quality([site, a, b])).try_fold(f64::INFINITY, |least, quality| {
+                let least = least.min(quality);
+                (least >= floor).then_some(least)
+            })
+        };
+        // Where the metric is even, quality is nowhere less on the way to a place where it is greater: triangles of at least some quality have their
+        // corners in convex sets.
+        let rises =
+            |by: &Vector| now < 0.0 || dual.site_after(v, *by * SHORTEST).is_some_and(|at| least(at, now).is_some());
+        let ways = ways(dual.local(v).tensor.cholesky());
+        let rising: Vec<Vector> = ways.into_par_iter().with_min_len(WAYS / 4).filter(rises).collect();
+        let tried: Vec<Vector> = LENGTHS.iter().flat_map(|&length| rising.iter().map(move |&by| by * length)).collect();
+        let most = if now < limits.quality { f64::INFINITY } else { limits.misfit };
+        let gained = |&by: &Vector| {
+            let site = dual.site_after(v, by)?;
+            let quality = least(site, now + GAIN)?;
+            let site = dual.ready(site);
+            links.iter().all(|&[u, _]| misfit(dual, [site, u]) <= most).then_some(quality)
+        };
+        let gains: Vec<Option<f64>> = tried.par_iter().with_min_len(WAYS / 2).map(gained).collect();
+        let better = ranked(gains.into_iter().enumerate().filter_map(|(i, gain)| Some((-gain?, i))));
+        better.into_iter().map(|(_, i)| tried[i]).collect()
+    }
+}
+
+/// The size of the logarithm of an edge's length.
+fn misfit<M: Moving>(dual: &M, ends: [M::Site; 2]) -> f64 {
+    dual.straight_length(ends).logarithm().abs()
+}
+
+/// Unit vectors all around.
+fn ways(frame: [f64; 3]) -> Vec<Vector> {
+    let way = |k: usize| {
+        let (sine, cosine) = (std::f64::consts::TAU * k as f64 / WAYS as f64).sine_and_cosine();
+        from_frame(frame, Vector::new(cosine, sine))
+    };
+    (0..WAYS).map(way).collect()
+}
