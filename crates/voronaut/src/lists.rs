@@ -1,5 +1,6 @@
 //! Lists: in order, without repetitions, marked, in rows, in classes; tables by numbers.
 
+use crate::parallel::join;
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
 
@@ -98,10 +99,11 @@ impl<T: Copy + Default> Rows<T> {
     }
 
     /// All items, row by row, those of a row sorted.
-    pub(crate) fn into_sorted_by_key<K: Ord>(mut self, key: impl Fn(&T) -> K) -> Vec<T> {
-        for row in self.starts.windows(2) {
-            self.items[row[0] as usize..row[1] as usize].sort_unstable_by_key(&key);
-        }
+    pub(crate) fn into_sorted_by_key<K: Ord>(mut self, key: impl Fn(&T) -> K + Sync) -> Vec<T>
+    where
+        T: Send,
+    {
+        sort_rows(&self.starts, &mut self.items, &key);
         self.items
     }
 
@@ -118,6 +120,23 @@ impl<T: Copy + Default> Rows<T> {
     /// The items of a row.
     pub(crate) fn row(&self, row: usize) -> &[T] {
         &self.items[self.starts[row] as usize..self.starts[row + 1] as usize]
+    }
+}
+
+/// Rows that are worth a thread's while.
+const ROWS: usize = 4096;
+
+/// Sorts the items of each row; the first one begins where `starts` says.
+fn sort_rows<T: Send, K: Ord>(starts: &[u32], items: &mut [T], key: &(impl Fn(&T) -> K + Sync)) {
+    let rows = starts.len() - 1;
+    if rows > ROWS {
+        let (first, second) = (&starts[..=rows / 2], &starts[rows / 2..]);
+        let (before, after) = items.split_at_mut((second[0] - first[0]) as usize);
+        join(|| sort_rows(first, before, key), || sort_rows(second, after, key));
+        return;
+    }
+    for row in starts.windows(2) {
+        items[(row[0] - starts[0]) as usize..(row[1] - starts[0]) as usize].sort_unstable_by_key(key);
     }
 }
 

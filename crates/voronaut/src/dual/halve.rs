@@ -4,18 +4,19 @@ use super::{Dual, Effort, Kind, Moving};
 use crate::geodesic::LocalMetric;
 use crate::geometry::Point;
 use crate::parallel::prelude::*;
-use crate::planar::Origin;
-use crate::triangulation::HalfEdge;
+use crate::triangulation::{Corner, HalfEdge};
 
 impl Dual<'_> {
     /// Halves edges longer than `above` (metric length), the longest ones where they are more than `most`, and flips. Ids change.
     pub(crate) fn halve_longer(&mut self, above: f64, most: usize) {
-        let cuts: Vec<(HalfEdge, Point)> = self.longest(above, most).into_iter().map(|h| (h, self.middle(h))).collect();
-        let (planar, origins) = self.planar.halved(&cuts);
+        let cuts = self.longest(above, most);
+        let points: Vec<Point> = cuts.iter().map(|&h| self.middle(h)).collect();
+        let (planar, origins) = self.planar.halved(&cuts, &points);
         let field = self.field;
-        let seed = |(&origin, &p): (&Origin, &Point)| match origin {
-            Origin::Vertex(v) => (self.locals[v.index()], self.kinds[v.index()]),
-            Origin::Edge(h) => {
+        let seed = |(&origin, &p): (&Corner, &Point)| match origin {
+            Corner::Vertex(v) => (self.locals[v.index()], self.kinds[v.index()]),
+            Corner::Cut(i) => {
+                let h = cuts[i as usize];
                 let near = self.local(self.topology().origin(h)).near;
                 let kind = if self.topology().is_fixed(h) { Kind::Curve } else { Kind::Free };
                 (LocalMetric::at_near(&field, p, near), kind)

@@ -81,8 +81,9 @@ impl<M: Moving> Mending<M> {
     /// The triangles of less quality, with that.
     fn below(&mut self, dual: &M, limit: f64) -> Vec<(f64, [VertexId; 3])> {
         self.measure(dual);
-        let faces = dual.topology().faces().map(|f| self.faces[f.index()]);
-        faces.filter(|(_, quality)| *quality < limit).map(|(corners, quality)| (quality, corners)).collect()
+        let faces = (0..self.faces.len()).into_par_iter().with_min_len(1024);
+        let here = faces.filter(|&f| dual.topology().is_face(FaceId(f as u32))).map(|f| self.faces[f]);
+        here.filter(|(_, quality)| *quality < limit).map(|(corners, quality)| (quality, corners)).collect()
     }
 
     /// Measures triangles that have changed since the last time.
@@ -108,23 +109,26 @@ impl<M: Moving> Mending<M> {
         });
     }
 
-    /// Moves free corners of triangles, in their order. Returns how many seeds moved.
+    /// Moves free corners of triangles. Returns how many times a seed moved.
     ///
-    /// Many are looked at before the first one moves; one whose neighbours have changed by its turn is looked at again.
+    /// Many are looked at before the first one moves; those whose neighbours have changed by their turn are looked at again with the next.
     fn corners(&mut self, dual: &mut M, triangles: Vec<(f64, [VertexId; 3])>, lengths: Lengths) -> usize {
         let corners = triangles.into_iter().flat_map(|(_, corners)| corners);
         let free: Vec<VertexId> = corners.filter(|&v| dual.kind(v) == Kind::Free).collect();
-        let mut count = 0;
-        for together in free.chunks(TOGETHER) {
-            let of_one =
-                |(i, &v): (usize, &VertexId)| (!together[..i].contains(&v)).then(|| self.view(dual, v, lengths));
-            let views: Vec<Option<View<M::Site>>> =
-                together.par_iter().enumerate().with_min_len(1).map(of_one).collect();
-            let before = count;
-            for (&v, view) in together.iter().zip(views) {
-                let holds = |view: &View<M::Site>| count == before || Ring::of(dual, v) == view.ring;
-                let mut view = view.filter(holds).unwrap_or_else(|| self.view(dual, v, lengths));
-                if view.climb(dual, v) {
+        let (mut next, mut again, mut count) = (free.into_iter(), Vec::new(), 0);
+        loop {
+            let mut together: Vec<VertexId> = std::mem::take(&mut again);
+            together.extend(next.by_ref().take(TOGETHER.saturating_sub(together.len())));
+            if together.is_empty() {
+                return count;
+            }
+            let views = together.par_iter().with_min_len(1).map(|&v| self.view(dual, v, lengths));
+            let views: Vec<View<M::Site>> = views.collect();
+            let before = self.moved.len();
+            for (v, mut view) in together.into_iter().zip(views) {
+                if !view.holds(dual, v, &self.moved[before..]) {
+                    again.push(v);
+                } else if view.climb(dual, v) {
                     self.moved.push(v);
                     count += 1;
                 } else {
@@ -132,7 +136,6 @@ impl<M: Moving> Mending<M> {
                 }
             }
         }
-        count
     }
 
     /// What is around a seed, and where it would be better.
@@ -141,12 +144,14 @@ impl<M: Moving> Mending<M> {
         let limits = ring.limits(dual, v, lengths);
         let is_in_vain = self.in_vain.get(&(v, lengths)) == Some(&ring);
         let better = if is_in_vain { Vec::new() } else { ring.better(dual, v, limits) };
-        View { ring, limits, better }
+        View { links: links(dual, v).collect(), ring, limits, better }
     }
 }
 
 /// What is around a seed.
 struct View<S> {
+    /// The triangles by their other corners.
+    links: Vec<[VertexId; 2]>,
     ring: Ring<S>,
     limits: Limits,
     /// Moves by which the least quality there is greater, the best first.
@@ -170,6 +175,12 @@ struct Ring<S> {
 }
 
 impl<S: Copy + PartialEq + Send + Sync> View<S> {
+    /// Whether it is as it was, but for seeds that have moved.
+    fn holds<M: Moving<Site = S>>(&self, dual: &M, v: VertexId, moved: &[VertexId]) -> bool {
+        let is_there = |u: &VertexId| !moved.contains(u);
+        self.links.iter().copied().eq(links(dual, v)) && is_there(&v) && self.links.as_flattened().iter().all(is_there)
+    }
+
     /// Climbs from one trial to the next; says whether the seed has moved.
     fn climb<M: Moving<Site = S>>(&mut self, dual: &mut M, v: VertexId) -> bool {
         let mut has_moved = false;
@@ -190,9 +201,8 @@ impl<S: Copy + PartialEq + Send + Sync> View<S> {
 
 impl<S: Copy + PartialEq + Send + Sync> Ring<S> {
     fn of<M: Moving<Site = S>>(dual: &M, v: VertexId) -> Self {
-        let topology = dual.topology();
-        let link = |h: HalfEdge| [dual.ready(dual.site(topology.target(h))), dual.site(topology.apex(h))];
-        Self { centre: dual.ready(dual.site(v)), links: topology.star(v).map(link).collect() }
+        let link = |[a, b]: [VertexId; 2]| [dual.ready(dual.site(a)), dual.site(b)];
+        Self { centre: dual.ready(dual.site(v)), links: links(dual, v).map(link).collect() }
     }
 
     /// No edge may leave the unit range, or get farther out, unless needles come first, or the quality is poor beside an edge that must stay whole
@@ -245,6 +255,12 @@ impl<S: Copy + PartialEq + Send + Sync> Ring<S> {
         let better = ranked(gains.into_iter().enumerate().filter_map(|(i, gain)| Some((-gain?, i))));
         better.into_iter().map(|(_, i)| tried[i]).collect()
     }
+}
+
+/// The triangles around a seed by their other corners.
+fn links<M: Moving>(dual: &M, v: VertexId) -> impl Iterator<Item = [VertexId; 2]> {
+    let topology = dual.topology();
+    topology.star(v).map(|h| [topology.target(h), topology.apex(h)])
 }
 
 /// The size of the logarithm of an edge's length.

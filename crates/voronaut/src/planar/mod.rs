@@ -9,7 +9,6 @@ mod order;
 
 pub use constrain::Crossing;
 pub use delaunay::delaunay;
-pub(crate) use halve::Origin;
 pub(crate) use locate::Location;
 pub(crate) use order::hilbert_order;
 

@@ -4,12 +4,14 @@
 //! edges are half-edges, never pairs of vertices. See [`crate::planar`] for an embedding in the plane.
 
 mod check;
+mod halve;
 mod ids;
 mod lawson;
 mod operations;
 mod renumber;
 
 pub(crate) use check::Broken;
+pub(crate) use halve::Corner;
 pub use ids::{Constraint, FaceId, HalfEdge, VertexId};
 pub use lawson::Limit;
 pub(crate) use lawson::{Flipping, Lawson, Rounds, flip_from, flip_in_rounds};
@@ -17,6 +19,7 @@ pub(crate) use lawson::{Flipping, Lawson, Rounds, flip_from, flip_in_rounds};
 use crate::lists::{Rows, in_order};
 use crate::parallel::{copy_over, prelude::*};
 use ids::NONE;
+use smallvec::{SmallVec, smallvec};
 
 /// Faces that are worth a thread's while.
 const FACES: usize = 256;
@@ -99,16 +102,23 @@ impl Triangulation {
     fn pair_twins(&mut self) {
         let ends = |h: u32| in_order(self.ends(HalfEdge(h)));
         let by_first = Rows::new(self.start.len(), (0..self.origin.len() as u32).map(|h| (ends(h)[0].0, h)));
-        for first in 0..by_first.count() {
+        // Of the half-edges of one edge the first and the second, the third and the fourth.
+        let pairs = |first: usize| {
             let sides = by_first.row(first);
+            let mut pairs: SmallVec<[[HalfEdge; 2]; 8]> = SmallVec::new();
+            let mut paired: SmallVec<[bool; 16]> = smallvec![false; sides.len()];
             for (i, &h) in sides.iter().enumerate() {
-                let joins = |&t: &u32| in_order(self.ends(HalfEdge(t))) == in_order(self.ends(HalfEdge(h)));
-                if self.twin[h as usize] == NONE
-                    && let Some(t) = sides[i + 1..].iter().copied().find(joins)
-                {
-                    self.glue(HalfEdge(h), HalfEdge(t));
+                let joins = |j: &usize| !paired[*j] && ends(sides[*j]) == ends(h);
+                if let Some(j) = (i + 1..sides.len()).find(joins).filter(|_| !paired[i]) {
+                    pairs.push([h, sides[j]].map(HalfEdge));
+                    paired[j] = true;
                 }
             }
+            pairs
+        };
+        let all = (0..by_first.count()).into_par_iter().with_min_len(FACES).flat_map_iter(pairs);
+        for [h, t] in all.collect::<Vec<_>>() {
+            self.glue(h, t);
         }
     }
 

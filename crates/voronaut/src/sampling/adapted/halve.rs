@@ -1,11 +1,11 @@
 //! Finer triangulations from coarser ones: edges inside patches cut in two, and those on the border at places that are given.
 
-use super::work::{Vertex, Work};
-use super::{Adapted, TOO_LONG};
+use super::work::{Vertex, Work, leaning, quality};
+use super::{Adapted, TOO_LONG, UPRIGHT};
 use crate::parallel::prelude::*;
 use crate::surface::metric::SurfaceMetric;
 use crate::surface::{Input, Place, Surface};
-use crate::triangulation::{HalfEdge, Triangulation, VertexId};
+use crate::triangulation::{Corner, FaceId, HalfEdge, Triangulation, VertexId};
 use std::collections::BTreeMap;
 
 /// A triangulation of a surface, and what is wanted of a finer one.
@@ -34,11 +34,7 @@ pub(crate) fn halved(input: &Input, metric: &dyn SurfaceMetric, halving: &Halvin
     }
     let long = work.longest(TOO_LONG, count.saturating_sub(places.len()));
     work.cut_border(given, are_there);
-    for (ends, vertex) in long {
-        if let (Some(h), Some(vertex)) = (work.topology.edge_between(ends[0], ends[1]), vertex) {
-            work.split_at(h, vertex);
-        }
-    }
+    work.halve(long);
     work.split_long(count);
     work.contract_to(count);
     work.finished()
@@ -55,6 +51,27 @@ impl Work<'_> {
         long.truncate(most);
         let middle = |&(_, h): &(f64, HalfEdge)| (t.ends(h), self.middle(h));
         long.par_iter().with_min_len(16).map(middle).collect()
+    }
+
+    /// Cuts edges at vertices, all at once, but where that would turn a triangle away from the surface, or make the first needle.
+    fn halve(&mut self, edges: Vec<([VertexId; 2], Option<Vertex>)>) {
+        let t = &self.topology;
+        let cuts = edges.into_par_iter().with_min_len(256);
+        let cuts = cuts.filter_map(|(ends, vertex)| Some((t.edge_between(ends[0], ends[1])?, vertex?)));
+        let (cuts, middles): (Vec<HalfEdge>, Vec<Vertex>) = cuts.unzip();
+        let vertex = |corner: Corner| match corner {
+            Corner::Vertex(v) => self.at(v),
+            Corner::Cut(i) => &middles[i as usize],
+        };
+        let stands = |f: FaceId, part: [Corner; 3]| {
+            let whole = t.corners(f);
+            let (upright, least) = (self.leaning(whole).min(UPRIGHT), self.least_of_parts(&[whole]));
+            let part = part.map(vertex);
+            leaning(part) >= upright && quality(part) >= least
+        };
+        let (topology, origins) = t.halved(&cuts, stands);
+        let vertices = origins.par_iter().with_min_len(1024).map(|&corner| *vertex(corner)).collect();
+        (self.topology, self.vertices, self.unused) = (topology, vertices, 0);
     }
 
     /// Makes all given places vertices: each is on the edge that goes on from the last one before it on its border.

@@ -42,10 +42,12 @@ impl Work<'_> {
             long.par_iter().with_min_len(16).map(middle).collect();
         let mut new = Vec::new();
         for (h, ends, vertex) in middles {
+            if new.len() == most {
+                break;
+            }
             // Splits beside it may have put another edge into this slot.
             let is_same = self.topology.ends(h) == ends;
-            if new.len() < most
-                && self.is_long(h, longer)
+            if self.is_long(h, longer)
                 && let Some(vertex) = if is_same { vertex } else { self.middle(h) }
             {
                 new.extend(self.split_at(h, vertex));
@@ -83,17 +85,21 @@ impl Work<'_> {
             let [a, b, c] = [t.origin(side), t.target(side), t.apex(side)].map(|v| self.at(v));
             [[a, &vertex, c], [&vertex, b, c]]
         };
-        let faces = || t.sides(h).map(|side| t.corners(side.face()));
-        let before = faces().map(|corners| self.leaning(corners)).fold(UPRIGHT, f64::min);
-        // Needles have poorer halves at first: a fan of them on a border must be split for all that. So must what has needles for halves, where
-        // flips mend these.
-        let poor = if self.keeps_edges { NEEDLE } else { 2.0 * NEEDLE };
-        let least = if faces().any(|corners| self.quality(corners) < poor) { 0.0 } else { NEEDLE };
+        let faces: Vec<[VertexId; 3]> = t.sides(h).map(|side| t.corners(side.face())).collect();
+        let before = faces.iter().map(|&corners| self.leaning(corners)).fold(UPRIGHT, f64::min);
+        let least = self.least_of_parts(&faces);
         let may_split = t.sides(h).flat_map(halves).all(|half| leaning(half) >= before && quality(half) >= least);
         may_split.then(|| {
             let behind = self.split(h, vertex);
             self.topology.origin(behind)
         })
+    }
+
+    /// The least quality that parts of triangles may have. Needles have poorer parts at first: a fan of them on a border must be split for all that.
+    /// So must what has needles for parts, where flips mend these.
+    pub(super) fn least_of_parts(&self, whole: &[[VertexId; 3]]) -> f64 {
+        let poor = if self.keeps_edges { NEEDLE } else { 2.0 * NEEDLE };
+        if whole.iter().any(|&corners| self.quality(corners) < poor) { 0.0 } else { NEEDLE }
     }
 
     /// Flips edges that are not Delaunay ([`Work::margin`]), where no triangle turns away from the surface.

@@ -17,7 +17,7 @@ pub(super) struct Work<'a> {
     pub(super) topology: Triangulation,
     pub(super) vertices: Vec<Vertex>,
     /// Vertices of the surface that no triangle has.
-    unused: usize,
+    pub(super) unused: usize,
     /// Whether no edge is flipped.
     pub(super) keeps_edges: bool,
 }
