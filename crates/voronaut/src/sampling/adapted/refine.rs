@@ -10,6 +10,8 @@ use crate::triangulation::{Flipping, HalfEdge, Lawson, Limit, Triangulation, Ver
 const LONG: f64 = 1.0;
 /// Passes over all edges that are too long, at most: each halves them.
 const HALVINGS: usize = 40;
+/// Middles that are looked for together, on all cores.
+const TOGETHER: usize = 256;
 /// Margins closer to zero than this are ties.
 const TIE: f64 = 1e-9;
 /// In fans, of which long borders are made at first, a slot has as many flips as they have triangles.
@@ -37,20 +39,22 @@ impl Work<'_> {
         let long = self.topology.edges_with(|h| self.is_long(h, longer)).into_par_iter().with_min_len(256);
         let mut long: Vec<(f64, HalfEdge)> = long.map(|h| (self.length_of(h), h)).collect();
         long.sort_by(|x, y| y.0.total_cmp(&x.0).then(x.1.cmp(&y.1)));
-        let middle = |&(_, h): &(f64, HalfEdge)| (h, self.topology.ends(h), self.middle(h));
-        let middles: Vec<(HalfEdge, [VertexId; 2], Option<Vertex>)> =
-            long.par_iter().with_min_len(16).map(middle).collect();
-        let mut new = Vec::new();
-        for (h, ends, vertex) in middles {
-            if new.len() == most {
-                break;
-            }
-            // Splits beside it may have put another edge into this slot.
-            let is_same = self.topology.ends(h) == ends;
-            if self.is_long(h, longer)
-                && let Some(vertex) = if is_same { vertex } else { self.middle(h) }
-            {
-                new.extend(self.split_at(h, vertex));
+        let long: Vec<(HalfEdge, [VertexId; 2])> = long.into_iter().map(|(_, h)| (h, self.topology.ends(h))).collect();
+        let (mut new, mut next) = (Vec::new(), long.as_slice());
+        while new.len() < most && !next.is_empty() {
+            // No more middles are looked for than may be wanted.
+            let (now, later) = next.split_at((most - new.len()).max(TOGETHER).min(next.len()));
+            next = later;
+            let middles = now.par_iter().with_min_len(16).map(|&(h, _)| self.middle(h));
+            for (&(h, ends), vertex) in now.iter().zip(middles.collect::<Vec<Option<Vertex>>>()) {
+                // Splits beside it may have put another edge into this slot.
+                let is_same = self.topology.ends(h) == ends;
+                if new.len() < most
+                    && self.is_long(h, longer)
+                    && let Some(vertex) = if is_same { vertex } else { self.middle(h) }
+                {
+                    new.extend(self.split_at(h, vertex));
+                }
             }
         }
         new
