@@ -30,6 +30,7 @@ use crate::planar::{Location, Planar};
 use crate::triangulation::{FaceId, HalfEdge, Lawson, Limit, VertexId};
 use margin::{LEVELS, Margins};
 use std::collections::HashSet;
+use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 /// What holds a vertex in its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -178,6 +179,14 @@ impl<'a> Dual<'a> {
             return chord_between(&self.field, [p, q], [u, v].map(|v| self.local(v).tensor), self.local(u).near);
         }
         hermite(p, self.local(u), q, self.local(v)).value
+    }
+
+    /// The share of the edges that a flip may remove whose lengths are within a factor of sqrt(2) of one; 1 of none.
+    pub(crate) fn unit_share(&self) -> f64 {
+        let edges = self.free_edges();
+        let is_unit = |&&h: &&HalfEdge| (FRAC_1_SQRT_2..=SQRT_2).contains(&self.edge_length(h));
+        let unit = edges.par_iter().with_min_len(256).filter(is_unit).count();
+        if edges.is_empty() { 1.0 } else { unit as f64 / edges.len() as f64 }
     }
 
     /// The faces that changed since the last call, some of them perhaps several times or removed.

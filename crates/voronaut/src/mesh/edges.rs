@@ -1,6 +1,7 @@
 //! The edges of a list of triangles, and which triangles have them: found by sorting, so in the same order on every machine.
 
 use crate::lists::{Classes, Rows, distinct, in_order};
+use crate::parallel::prelude::*;
 use smallvec::SmallVec;
 use std::borrow::Cow;
 
@@ -72,6 +73,13 @@ impl<'a> Edges<'a> {
         self.groups().map(|same| ends_of(&self.triangles, same[0]))
     }
 
+    /// The first half-edge of each edge, in the order of the edges.
+    pub(crate) fn firsts(&self) -> Vec<u32> {
+        let ends = |i: usize| ends_of(&self.triangles, self.half_edges[i]);
+        let all = (0..self.half_edges.len()).into_par_iter().with_min_len(4096);
+        all.filter(|&i| i == 0 || ends(i) != ends(i - 1)).map(|i| self.half_edges[i]).collect()
+    }
+
     /// The sides of the edge between two vertices; none where there is no edge.
     pub fn at(&self, ends: [u32; 2]) -> Sides {
         let ends = in_order(ends);
@@ -123,7 +131,8 @@ impl<'a> Edges<'a> {
         half_edges.iter().map(|&h| self.side(h)).collect()
     }
 
-    fn side(&self, half_edge: u32) -> EdgeSide {
+    /// The side that a half-edge is.
+    pub(crate) fn side(&self, half_edge: u32) -> EdgeSide {
         let [a, b] = directed(&self.triangles, half_edge);
         EdgeSide { ends: in_order([a, b]), half_edge, forward: a < b }
     }

@@ -315,15 +315,7 @@ fn collect_parts<T: Sync, U: Send>(items: &[T], f: impl Fn(&[T]) -> Result<Vec<U
 
 /// Measures all edges in parallel, by their first sides, in their order.
 pub(super) fn of_edges<U: Send>(edges: &Edges, f: impl Fn(&EdgeSide) -> Result<U> + Sync + Send) -> Result<Vec<U>> {
-    let mut all = Vec::with_capacity(edges.ends().count());
-    let mut first = edges.iter().map(|sides| sides[0]);
-    loop {
-        let block: Vec<EdgeSide> = first.by_ref().take(BLOCK).collect();
-        if block.is_empty() {
-            return Ok(all);
-        }
-        all.append(&mut collect(&block, &f)?);
-    }
+    collect(&edges.firsts(), |&half_edge| f(&edges.side(half_edge)))
 }
 
 /// Of nothing.

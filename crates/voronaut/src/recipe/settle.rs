@@ -77,8 +77,23 @@ fn account(dual: &mut Dual, domain: &Domain, found: Consultation) -> figures::Du
 
 /// Triangles that are mended in the end, as a share of all.
 const MENDED_SHARE: f64 = 0.002;
+/// Where so great a share of the edges is of unit length it is at least so many triangles, so often: of 500 to 10,000 vertices for sampled values the
+/// least quality was 0.72 to 0.85 for 0.63 to 0.84. Elsewhere lengths pay: of 1,000 vertices for a mild shock 98.4 % were of unit length for 98.9 %.
+const EVEN: f64 = 0.998;
+const LEAST_MENDED: usize = 24;
+const MENDINGS: usize = 3;
 /// Relative error of the energy that tangent planes give, where all seeds are rough.
 const ROUGH_DOUBT: f64 = 0.03;
+
+/// Mends the worst triangles.
+fn mend(dual: &mut Dual) {
+    let poor = (dual.topology().face_count() as f64 * MENDED_SHARE).ceil() as usize;
+    let (most, times) = if dual.unit_share() >= EVEN { (poor.max(LEAST_MENDED), MENDINGS) } else { (poor, 1) };
+    let mut mending = Mending::default();
+    for _ in 0..times {
+        mending.worst(dual, most);
+    }
+}
 
 impl Job<'_> {
     /// Relaxes in parts, with an exchange of seeds before each but the first.
@@ -95,8 +110,7 @@ impl Job<'_> {
         let relaxed = self.relax_in_parts(dual, &cells, effort.parts(self.is_even), patience, self.progress)?;
         self.fit_scale(dual);
         if self.exchanges() {
-            let poor = (dual.topology().face_count() as f64 * MENDED_SHARE).ceil() as usize;
-            Mending::default().worst(dual, poor);
+            mend(dual);
             dual.take_touched();
         }
         dual.verdict()?;
