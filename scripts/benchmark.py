@@ -60,6 +60,7 @@ GROUPS = {}
 VERTICES = re.compile(r"\bVertices\s+(\d+)")
 MATCHED = 0.03  # by how much a peer's number of vertices may differ where it is sought
 PASSES = 5
+LONG, TOLD = 2, 0.02  # seconds of jobs whose stages are told, and the least share of a stage
 
 
 class Failed(Exception):
@@ -79,7 +80,7 @@ def main():
             done = [(case, timed(typed, case, *what)) for case, *what in cases(typed) if typed.only in case]
             rows = table(done, [peer for peer in peers if typed.programs[peer]])
             print(markdown(rows), flush=True)
-            sections.append((name, " ".join([*cases.__doc__.split(), *skipped]), rows))
+            sections.append((name, " ".join([*cases.__doc__.split(), *skipped]), rows, [row for case in done for row in stages(*case)]))
             better += [line for case, results in done for line in where_better(f"{name}, {case}", results)]
     print("\n".join(better))
     if typed.page:
@@ -148,8 +149,12 @@ def quick(typed, name, *words):
 
 def ours(typed, variant, out, *words):
     """Subjects: voronaut with every number of threads. They write the same mesh."""
-    command = [typed.voronaut, *words, "--report", out.with_suffix(".json"), "-q", "--threads"]
-    return {(variant, threads): (out, functools.partial(run, typed, out, *command, threads)) for threads in typed.threads}
+    report = out.with_suffix(".json")
+
+    def staged(threads):
+        cost = run(typed, out, typed.voronaut, *words, "--report", report, "-q", "--threads", threads)
+        return cost | {"stages": json.loads(report.read_text())["seconds"]}
+    return {(variant, threads): (out, functools.partial(staged, threads)) for threads in typed.threads}
 
 
 def theirs(typed, peer, out, *words):
@@ -496,11 +501,31 @@ def gains(rows):
     return found
 
 
+def stages(case, results):
+    """Of a job of two seconds or more on one thread: its stages that take a share of that worth telling, and what threads gain in each."""
+    most = max((threads for name, threads in results if name == "voronaut"), default=1)
+    found = [results.get(("voronaut", threads), {}) for threads in (1, most)]
+    if most == 1 or any("failed" in it or not it for it in found) or medians(found[0])["s"] < LONG:
+        return []
+    one, all_threads = (of_stages(it["costs"]) for it in found)
+    gain = {stage: seconds / all_threads[stage] for stage, seconds in one.items() if seconds > TOLD * sum(one.values())}
+    return [[case, stage, percent(one[stage] / sum(one.values())), str(most), f"{by:.2f}"] for stage, by in gain.items()]
+
+
+def of_stages(costs):
+    """Medians of the seconds that stages took; what is left is reading, judging and writing."""
+    found = {stage: statistics.median(cost["stages"][stage] for cost in costs) for stage in costs[0]["stages"] if stage != "total"}
+    return found | {"all else": max(statistics.median(cost["s"] for cost in costs) - sum(found.values()), 1e-9)}
+
+
 def threads(sections):
     said = "Jobs of a second or more on one thread. By Amdahl's law: what part of that time only one thread works, and what 16 cores would gain."
     heading = ["input", "program", "threads", "times as fast as one", "share on one alone", "16 cores: times as fast"]
-    rows = [heading, *(row for _, _, rows in sections for row in gains(rows))]
-    return f"## Threads\n\n{said}\n\n{markdown(rows)}"
+    rows = [heading, *(row for _, _, rows, _ in sections for row in gains(rows))]
+    of_which = (f"Where that is: stages of jobs of {LONG} seconds or more that take over {TOLD:.0%} of the time on one thread. All else is reading, "
+                "judging and writing.")
+    parts = [["input", "stage", "share of the time on one", "threads", "times as fast as one"], *(row for *_, rows in sections for row in rows)]
+    return f"## Threads\n\n{said}\n\n{markdown(rows)}\n{of_which}\n\n{markdown(parts)}"
 
 
 def where_better(case, results):
@@ -535,11 +560,11 @@ def page(typed, sections, better):
     cores, memory = os.cpu_count(), os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") / 2**30
     version = subprocess.run([typed.voronaut, "--version"], capture_output=True, text=True, check=True).stdout.strip()
     version += f", mmgpy {importlib.metadata.version('mmgpy')}" if typed.programs["mmg2d"] or typed.programs["mmgs"] else ""
-    given = " ".join(name for name, _, _ in sections) + (f" --sizes {' '.join(map(str, typed.sizes))}" if typed.sizes else "")
+    given = " ".join(name for name, *_ in sections) + (f" --sizes {' '.join(map(str, typed.sizes))}" if typed.sizes else "")
     parts = [f"# Benchmark\n\nMeasured on {datetime.date.today()} on a machine with {cores} cores and {memory:.0f} GiB of memory "
              f"({version}). `scripts/benchmark.py {given} --runs {typed.runs} --page docs/benchmark.md` wrote this page; no figure in it "
              f"is typed by hand.\n\n{' '.join(__doc__.split(chr(10) * 2)[-1].split())}\n"]
-    parts += [f"## {name}\n\n{text}\n\n<!-- measured: benchmark-{name} -->\n{markdown(rows)}<!-- end -->\n" for name, text, rows in sections]
+    parts += [f"## {name}\n\n{text}\n\n<!-- measured: benchmark-{name} -->\n{markdown(rows)}<!-- end -->\n" for name, text, rows, _ in sections]
     parts.append(threads(sections))
     said = "In what a peer is faster, takes less, or has a better figure: of costs in brackets beside how many threads of ours."
     lines = "\n".join(better) or "None, of the peers that ran."

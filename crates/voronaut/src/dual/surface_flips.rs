@@ -127,8 +127,8 @@ impl SurfaceDual<'_> {
     /// The quality of the worse triangle of an edge, where it is poor and better after a flip.
     fn rounding(&self, h: HalfEdge) -> Option<f64> {
         let quad = self.topology().quad(h)?;
-        let sites = quad.map(|v| self.site(v));
         let Flip { now, then } = self.flip_of(h)?;
+        let sites = quad.map(|v| self.site(v));
         let site = |v: VertexId| sites[quad.iter().position(|&w| w == v).unwrap_or(0)];
         let worse = |pair: [[VertexId; 3]; 2]| {
             pair.map(|corners| self.quality(corners.map(site))).into_iter().fold(1.0, f64::min)

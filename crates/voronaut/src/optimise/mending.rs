@@ -109,12 +109,14 @@ impl<M: Moving> Mending<M> {
         });
     }
 
-    /// Moves free corners of triangles. Returns how many times a seed moved.
+    /// Moves free corners of triangles, each once. Returns how many moved.
     ///
     /// Many are looked at before the first one moves; those whose neighbours have changed by their turn are looked at again with the next.
     fn corners(&mut self, dual: &mut M, triangles: Vec<(f64, [VertexId; 3])>, lengths: Lengths) -> usize {
+        let mut is_new = vec![true; dual.topology().vertex_slots()];
         let corners = triangles.into_iter().flat_map(|(_, corners)| corners);
-        let free: Vec<VertexId> = corners.filter(|&v| dual.kind(v) == Kind::Free).collect();
+        let free = corners.filter(|&v| dual.kind(v) == Kind::Free && std::mem::take(&mut is_new[v.index()]));
+        let free: Vec<VertexId> = free.collect();
         let (mut next, mut again, mut count) = (free.into_iter(), Vec::new(), 0);
         loop {
             let mut together: Vec<VertexId> = std::mem::take(&mut again);

@@ -109,7 +109,9 @@ impl Triangulation {
             let mut paired: SmallVec<[bool; 16]> = smallvec![false; sides.len()];
             for (i, &h) in sides.iter().enumerate() {
                 let joins = |j: &usize| !paired[*j] && ends(sides[*j]) == ends(h);
-                if let Some(j) = (i + 1..sides.len()).find(joins).filter(|_| !paired[i]) {
+                if !paired[i]
+                    && let Some(j) = (i + 1..sides.len()).find(joins)
+                {
                     pairs.push([h, sides[j]].map(HalfEdge));
                     paired[j] = true;
                 }

@@ -42,7 +42,7 @@ impl Work<'_> {
         let long: Vec<(HalfEdge, [VertexId; 2])> = long.into_iter().map(|(_, h)| (h, self.topology.ends(h))).collect();
         let (mut new, mut next) = (Vec::new(), long.as_slice());
         while new.len() < most && !next.is_empty() {
-            // No more middles are looked for than may be wanted.
+            // Not many more middles are looked for than may be wanted.
             let (now, later) = next.split_at((most - new.len()).max(TOGETHER).min(next.len()));
             next = later;
             let middles = now.par_iter().with_min_len(16).map(|&(h, _)| self.middle(h));
