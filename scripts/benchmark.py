@@ -60,7 +60,7 @@ GROUPS = {}
 VERTICES = re.compile(r"\bVertices\s+(\d+)")
 MATCHED = 0.03  # by how much a peer's number of vertices may differ where it is sought
 PASSES = 5
-LONG, TOLD = 2, 0.02  # seconds of jobs whose stages are told, and the least share of a stage
+LONG, TOLD = 1, 0.02  # seconds on one thread of jobs whose gain by threads is told, and the least share of a stage
 
 
 class Failed(Exception):
@@ -487,13 +487,13 @@ def multiple(name, mine, theirs):
 
 
 def gains(rows):
-    """Of jobs of a second or more in the rows of a group: what threads gain, what share of the time on one no others help with, and what
+    """Of long jobs in the rows of a group: what threads gain, what share of the time on one no others help with, and what
     16 cores would then gain (Amdahl's law)."""
     found = []
     for (case, name), them in itertools.groupby(rows[1:], key=lambda row: row[:2]):
         seconds = {int(threads): float(s.replace(",", "")) for _, _, threads, s, *_ in them if not s.startswith("fails")}
         most = max(seconds, default=1)
-        if not name.startswith("voronaut") or most == 1 or seconds.get(1, 0) < 1:
+        if not name.startswith("voronaut") or most == 1 or seconds.get(1, 0) < LONG:
             continue
         gain = seconds[1] / seconds[most]
         alone = min(max((most / gain - 1) / (most - 1), 0), 1)
@@ -502,7 +502,7 @@ def gains(rows):
 
 
 def stages(case, results):
-    """Of a job of two seconds or more on one thread: its stages that take a share of that worth telling, and what threads gain in each."""
+    """Of a long job: its stages on one thread that take a share of that worth telling, and what threads gain in each."""
     most = max((threads for name, threads in results if name == "voronaut"), default=1)
     found = [results.get(("voronaut", threads), {}) for threads in (1, most)]
     if most == 1 or any("failed" in it or not it for it in found) or medians(found[0])["s"] < LONG:
@@ -522,8 +522,7 @@ def threads(sections):
     said = "Jobs of a second or more on one thread. By Amdahl's law: what part of that time only one thread works, and what 16 cores would gain."
     heading = ["input", "program", "threads", "times as fast as one", "share on one alone", "16 cores: times as fast"]
     rows = [heading, *(row for _, _, rows, _ in sections for row in gains(rows))]
-    of_which = (f"Where that is: stages of jobs of {LONG} seconds or more that take over {TOLD:.0%} of the time on one thread. All else is reading, "
-                "judging and writing.")
+    of_which = f"Where that is: stages that take over {TOLD:.0%} of the time on one thread. All else is reading, judging and writing."
     parts = [["input", "stage", "share of the time on one", "threads", "times as fast as one"], *(row for *_, rows in sections for row in rows)]
     return f"## Threads\n\n{said}\n\n{markdown(rows)}\n{of_which}\n\n{markdown(parts)}"
 

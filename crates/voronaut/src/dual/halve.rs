@@ -10,7 +10,7 @@ impl Dual<'_> {
     /// Halves edges longer than `above` (metric length), the longest ones where they are more than `most`, and flips. Ids change.
     pub(crate) fn halve_longer(&mut self, above: f64, most: usize) {
         let cuts = self.longest(above, most);
-        let points: Vec<Point> = cuts.iter().map(|&h| self.middle(h)).collect();
+        let points: Vec<Point> = cuts.par_iter().with_min_len(256).map(|&h| self.middle(h)).collect();
         let (planar, origins) = self.planar.halved(&cuts, &points);
         let field = self.field;
         let seed = |(&origin, &p): (&Corner, &Point)| match origin {

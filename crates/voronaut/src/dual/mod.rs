@@ -181,12 +181,9 @@ impl<'a> Dual<'a> {
         hermite(p, self.local(u), q, self.local(v)).value
     }
 
-    /// The share of the edges that a flip may remove whose lengths are within a factor of sqrt(2) of one; 1 of none.
+    /// The share of unit lengths among the edges that a flip may remove.
     pub(crate) fn unit_share(&self) -> f64 {
-        let edges = self.free_edges();
-        let is_unit = |&&h: &&HalfEdge| (FRAC_1_SQRT_2..=SQRT_2).contains(&self.edge_length(h));
-        let unit = edges.par_iter().with_min_len(256).filter(is_unit).count();
-        if edges.is_empty() { 1.0 } else { unit as f64 / edges.len() as f64 }
+        unit_share(&self.free_edges(), |h| self.edge_length(h))
     }
 
     /// The faces that changed since the last call, some of them perhaps several times or removed.
@@ -287,4 +284,11 @@ impl<'a> Dual<'a> {
         self.fault.get_or_insert((p, local.tensor));
         LocalMetric { tensor: Tensor::IDENTITY, ..LocalMetric::default() }
     }
+}
+
+/// The share of edges whose lengths are within a factor of sqrt(2) of one; 1 of none.
+fn unit_share(edges: &[HalfEdge], length: impl Fn(HalfEdge) -> f64 + Sync) -> f64 {
+    let is_unit = |&&h: &&HalfEdge| (FRAC_1_SQRT_2..=SQRT_2).contains(&length(h));
+    let unit = edges.par_iter().with_min_len(64).filter(is_unit).count();
+    if edges.is_empty() { 1.0 } else { unit as f64 / edges.len() as f64 }
 }

@@ -4,7 +4,7 @@
 //! without doubled edges, and lets no triangle turn away from the surface's normals. What the metric is around a seed, and where its neighbours are, is
 //! told in a chart there (RR-9103, section 12).
 
-use super::{Kind, Moving};
+use super::{Kind, Moving, unit_share};
 use crate::elementary::Elementary;
 use crate::error::{Error, Result};
 use crate::geodesic::{LocalMetric, STILL};
@@ -15,7 +15,6 @@ use crate::progress::Sketch;
 use crate::surface::metric::SurfaceMetric;
 use crate::surface::{Chart, Input, Place};
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
-use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 /// The least cosine between a triangle's normal and those of the surface at its corners.
 pub(super) const UPRIGHT: f64 = 0.3;
@@ -244,14 +243,9 @@ impl<'a> SurfaceDual<'a> {
         (logs.iter().sum::<f64>() / logs.len().max(1) as f64).exponential()
     }
 
-    /// The share of the edges that are free whose lengths are within a factor of sqrt(2) of one.
+    /// The share of unit lengths among the edges that are free.
     pub(crate) fn unit_share(&self) -> f64 {
-        let edges = self.free_edges();
-        let is_unit = |&&h: &&HalfEdge| {
-            let length = self.estimate(self.topology().ends(h)).value;
-            (FRAC_1_SQRT_2..=SQRT_2).contains(&length)
-        };
-        edges.par_iter().with_min_len(64).filter(is_unit).count() as f64 / edges.len().max(1) as f64
+        unit_share(&self.free_edges(), |h| self.estimate(self.topology().ends(h)).value)
     }
 
     /// Where a move leads a seed, unless the surface turns away.

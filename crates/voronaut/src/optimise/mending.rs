@@ -124,7 +124,7 @@ impl<M: Moving> Mending<M> {
             if together.is_empty() {
                 return count;
             }
-            let views = together.par_iter().with_min_len(1).map(|&v| self.view(dual, v, lengths));
+            let views = together.par_iter().map(|&v| self.view(dual, v, lengths));
             let views: Vec<View<M::Site>> = views.collect();
             let before = self.moved.len();
             for (v, mut view) in together.into_iter().zip(views) {

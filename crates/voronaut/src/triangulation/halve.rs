@@ -103,11 +103,10 @@ impl<'a> Cutting<'a> {
     /// The constraints of a part of a face, whose half-edges are numbered from one on.
     fn constraints(&self, f: FaceId, part: [Corner; 3], first: u32) -> impl Iterator<Item = (HalfEdge, Constraint)> {
         let is_constrained = f.half_edges().into_iter().any(|h| self.topology.constraint(h).is_some());
-        let sides = (0..if is_constrained { 3 } else { 0 }).filter_map(move |i| {
+        (0..if is_constrained { 3 } else { 0 }).filter_map(move |i| {
             let side = self.side(f, [part[i], part[(i + 1) % 3]])?;
             Some((HalfEdge(first + i as u32), self.topology.constraint(side)?))
-        });
-        sides.collect::<Vec<_>>().into_iter()
+        })
     }
 
     /// The side of a face that an edge between two corners is part of, if it is one.
