@@ -145,7 +145,7 @@ fn write_section(writer: &mut Writer<'_>, dimension: u8, name: &str, values: &[S
     let row = 8 * values.iter().map(SolutionValues::components).sum::<usize>();
     let count = values[0].count();
     writer.section(name, count, row, &head)?;
-    (0..count).try_for_each(|i| writer.sink.row(values.iter().flat_map(|values| values.row(i)).copied()))
+    writer.sink.rows(count, |row, i| row.put_all(values.iter().flat_map(|values| values.row(i)).copied()))
 }
 
 /// The number by which the format calls the type.

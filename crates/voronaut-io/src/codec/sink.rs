@@ -1,17 +1,29 @@
 //! What files are written by: one number after the other, as words or as bytes.
 
 use super::kinds::{Form, Kind};
+use rayon::prelude::*;
 use std::fmt;
 use std::io::{self, Write};
+
+/// Rows that a thread writes at once, and how many times as many are in memory.
+const ROWS: usize = 1024;
+const PARTS: usize = 64;
 
 /// A file that is being written, row by row.
 pub(crate) struct Sink<'a> {
     out: &'a mut dyn Write,
-    form: Form,
-    /// The numbers since the last row ended.
-    row: Vec<u8>,
-    /// Bytes of all numbers so far.
+    /// The rows that are not written yet.
+    rows: Rows,
+    /// Bytes of all numbers of a binary file before.
     written: u64,
+}
+
+/// Rows of numbers, one after the other.
+pub(crate) struct Rows {
+    form: Form,
+    bytes: Vec<u8>,
+    /// Where the last row starts.
+    row: usize,
 }
 
 /// A type of numbers that are written, in binary files with the least byte first.
@@ -68,16 +80,16 @@ fn put_shown(number: impl fmt::Display, to: &mut Vec<u8>) {
 impl<'a> Sink<'a> {
     /// A file in which nothing is yet.
     pub(crate) fn new(form: Form, out: &'a mut dyn Write) -> Self {
-        Self { out, form, row: Vec::new(), written: 0 }
+        Self { out, rows: Rows::new(form), written: 0 }
     }
 
     pub(crate) fn is_binary(&self) -> bool {
-        self.form == Form::Binary
+        self.rows.form == Form::Binary
     }
 
     /// How many bytes the numbers of a binary file have so far.
     pub(crate) fn written(&self) -> u64 {
-        self.written
+        self.written + if self.is_binary() { self.rows.bytes.len() as u64 } else { 0 }
     }
 
     /// Ends the row, and then a line of text, be the file binary or not.
@@ -88,19 +100,12 @@ impl<'a> Sink<'a> {
 
     /// The next number of the row; in text a word.
     pub(crate) fn put<T: Number>(&mut self, number: T) {
-        if self.is_binary() {
-            self.written += T::KIND.size() as u64;
-            return number.put_bytes(&mut self.row);
-        }
-        if !self.row.is_empty() {
-            self.row.push(b' ');
-        }
-        number.put_word(&mut self.row);
+        self.rows.put(number);
     }
 
     /// The next numbers of the row, one by one.
     pub(crate) fn put_all<T: Number>(&mut self, numbers: impl IntoIterator<Item = T>) {
-        numbers.into_iter().for_each(|number| self.put(number));
+        self.rows.put_all(numbers);
     }
 
     /// The last numbers of the row.
@@ -111,12 +116,69 @@ impl<'a> Sink<'a> {
 
     /// Ends the row, with which its numbers are written: in text as a line, if there are any.
     pub(crate) fn end_row(&mut self) -> io::Result<()> {
-        if !(self.row.is_empty() || self.is_binary()) {
-            self.row.push(b'\n');
-        }
-        self.out.write_all(&self.row)?;
-        self.row.clear();
+        self.rows.end_row();
+        self.out.write_all(&self.rows.bytes)?;
+        self.written = self.written();
+        self.rows.clear();
         Ok(())
+    }
+
+    /// So many rows, each filled by its number; by all threads.
+    pub(crate) fn rows(&mut self, count: usize, fill: impl Fn(&mut Rows, usize) + Sync) -> io::Result<()> {
+        self.end_row()?;
+        let form = self.rows.form;
+        let part = |first: usize| {
+            let mut rows = Rows::new(form);
+            for i in first..count.min(first + ROWS) {
+                fill(&mut rows, i);
+                rows.end_row();
+            }
+            rows
+        };
+        let firsts: Vec<usize> = (0..count).step_by(ROWS).collect();
+        for firsts in firsts.chunks(PARTS) {
+            let parts: Vec<Rows> = firsts.par_iter().map(|&first| part(first)).collect();
+            for rows in parts {
+                self.rows = rows;
+                self.end_row()?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Rows {
+    fn new(form: Form) -> Self {
+        Self { form, bytes: Vec::new(), row: 0 }
+    }
+
+    /// The next number of the row; in text a word.
+    pub(crate) fn put<T: Number>(&mut self, number: T) {
+        if self.form == Form::Binary {
+            return number.put_bytes(&mut self.bytes);
+        }
+        if self.bytes.len() > self.row {
+            self.bytes.push(b' ');
+        }
+        number.put_word(&mut self.bytes);
+    }
+
+    /// The next numbers of the row, one by one.
+    pub(crate) fn put_all<T: Number>(&mut self, numbers: impl IntoIterator<Item = T>) {
+        numbers.into_iter().for_each(|number| self.put(number));
+    }
+
+    /// Ends the row: in text by a line's end, if it has numbers.
+    fn end_row(&mut self) {
+        if self.form == Form::Text && self.bytes.len() > self.row {
+            self.bytes.push(b'\n');
+        }
+        self.row = self.bytes.len();
+    }
+
+    fn clear(&mut self) {
+        self.bytes.clear();
+        self.row = 0;
     }
 }
 
@@ -137,6 +199,20 @@ mod tests {
             let text = Shortest(value).to_string();
             assert_eq!(text.parse::<f64>().unwrap().to_bits(), value.to_bits(), "{text}");
             assert!(text.len() < 26, "{text}");
+        }
+    }
+
+    #[test]
+    fn many_rows_are_as_those_one_by_one() {
+        let count = 2 * ROWS * PARTS + 7;
+        for form in [Form::Text, Form::Binary] {
+            let [mut one_by_one, mut at_once] = [Vec::new(), Vec::new()];
+            let mut sink = Sink::new(form, &mut one_by_one);
+            (0..count).for_each(|i| sink.row((0..i % 3).map(|k| (i + k) as u32)).unwrap());
+            let mut other = Sink::new(form, &mut at_once);
+            other.rows(count, |rows, i| rows.put_all((0..i % 3).map(|k| (i + k) as u32))).unwrap();
+            assert_eq!(sink.written(), other.written());
+            assert_eq!(one_by_one, at_once);
         }
     }
 

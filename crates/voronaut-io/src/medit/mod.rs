@@ -12,7 +12,7 @@ use super::Document;
 use super::codec::{At, Largest, several};
 use super::curved::{Elements as Nodes, places};
 use super::cutting::cut;
-use super::document::{labels, marked, marked_mut};
+use super::document::{marked, marked_mut};
 use super::volumes::Volumes;
 use curved::{Curves, write_order};
 use std::io::{self, BufRead, Write};
@@ -59,10 +59,10 @@ pub fn write(mesh: &Mesh, form: Form, out: &mut dyn Write) -> io::Result<()> {
     let mut writer = Writer::new(form, coordinates, MOST_BYTES * elements as u64, out)?;
     let row = 8 * usize::from(coordinates) + 4;
     writer.section("Vertices", nodes.points.len(), row, &[])?;
-    for (i, point) in nodes.points.iter().enumerate() {
-        writer.sink.put_all(point[..usize::from(coordinates)].iter().copied());
-        writer.sink.row([mesh.point_labels.get(i).copied().unwrap_or(0)])?;
-    }
+    writer.sink.rows(nodes.points.len(), |row, i| {
+        row.put_all(nodes.points[i][..usize::from(coordinates)].iter().copied());
+        row.put(mesh.point_labels.get(i).copied().unwrap_or(0));
+    })?;
     write_elements(&mut writer, &nodes, 1, &mesh.edge_labels, mesh.edges.len())?;
     write_elements(&mut writer, &nodes, 2, &mesh.triangle_labels, mesh.triangles.len())?;
     for ((name, _), numbers) in MARKS.into_iter().zip(marked(mesh)) {
@@ -250,10 +250,10 @@ fn write_elements(
     let name = NAMES[usize::from(dimension) - 1][nodes.order - 1];
     let width = if dimension == 1 { nodes.order + 1 } else { places(nodes.order).len() };
     writer.section(name, count, 4 * width + 4, &[])?;
-    for (element, label) in (0..count as u32).zip(labels(element_labels)) {
-        writer.sink.put_all(nodes.nodes(dimension, &element).map(|point| point + 1));
-        writer.sink.row([label])?;
-    }
+    writer.sink.rows(count, |row, element| {
+        row.put_all(nodes.nodes(dimension, &(element as u32)).map(|point| point + 1));
+        row.put(element_labels.get(element).copied().unwrap_or(0));
+    })?;
     write_order(writer, dimension, nodes.order)
 }
 

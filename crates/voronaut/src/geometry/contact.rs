@@ -1,6 +1,7 @@
 //! Whether two triangles in space meet where they should not, by exact predicates.
 
 use super::tree::boxes_meet;
+use crate::parallel::prelude::*;
 use super::{
     Aabb3, Bounds, Orientation, Point, Point3, around, meeting_pairs, orientation, signed_area, signed_volume,
 };
@@ -30,7 +31,7 @@ fn contact(t: &Corners, u: &Corners) -> Option<Point3> {
 /// those that are no neighbours ([`meeting_pairs`]).
 pub(crate) fn contacts(triangles: &[Corners], asked: impl Fn(usize) -> bool + Sync) -> Vec<([usize; 2], Point3)> {
     let bounds = |t: &Corners| Aabb3::of(t.points).expect("three corners").into();
-    let boxes: Vec<Bounds<3>> = triangles.iter().map(bounds).collect();
+    let boxes: Vec<Bounds<3>> = triangles.par_iter().with_min_len(1024).map(bounds).collect();
     meeting_pairs(&boxes, asked, |[i, j]| contact(&triangles[i], &triangles[j]))
 }
 

@@ -109,31 +109,44 @@ impl<M: Moving> Mending<M> {
         });
     }
 
-    /// Moves free corners of triangles, each once. Returns how many moved.
+    /// Moves free corners of triangles, each from one trial to the next. Returns how many moved.
     ///
-    /// Many are looked at before the first one moves; those whose neighbours have changed by their turn are looked at again with the next.
+    /// Many are looked at before the first one moves; those whose neighbours have changed by their turn are looked at again with the next, as are
+    /// those that have moved.
     fn corners(&mut self, dual: &mut M, triangles: Vec<(f64, [VertexId; 3])>, lengths: Lengths) -> usize {
         let mut is_new = vec![true; dual.topology().vertex_slots()];
         let corners = triangles.into_iter().flat_map(|(_, corners)| corners);
         let free = corners.filter(|&v| dual.kind(v) == Kind::Free && std::mem::take(&mut is_new[v.index()]));
-        let free: Vec<VertexId> = free.collect();
+        // With the moves they have made.
+        let free: Vec<(VertexId, usize)> = free.map(|v| (v, 0)).collect();
         let (mut next, mut again, mut count) = (free.into_iter(), Vec::new(), 0);
         loop {
-            let mut together: Vec<VertexId> = std::mem::take(&mut again);
+            let mut together: Vec<(VertexId, usize)> = std::mem::take(&mut again);
             together.extend(next.by_ref().take(TOGETHER.saturating_sub(together.len())));
             if together.is_empty() {
                 return count;
             }
-            let views = together.par_iter().map(|&v| self.view(dual, v, lengths));
+            let views = together.par_iter().map(|&(v, _)| self.view(dual, v, lengths));
             let views: Vec<View<M::Site>> = views.collect();
             let before = self.moved.len();
-            for (v, mut view) in together.into_iter().zip(views) {
+            for ((v, moves), view) in together.into_iter().zip(views) {
                 if !view.holds(dual, v, &self.moved[before..]) {
-                    again.push(v);
-                } else if view.climb(dual, v) {
+                    again.push((v, moves));
+                    continue;
+                }
+                let moves_on = view.better.iter().any(|&by| dual.shift_by(v, by));
+                if moves_on {
                     self.moved.push(v);
-                    count += 1;
-                } else {
+                    count += usize::from(moves == 0);
+                }
+                if moves_on && moves + 1 < MOVES {
+                    again.push((v, moves + 1));
+                    continue;
+                }
+                if moves_on || moves > 0 {
+                    dual.settle_move(v);
+                }
+                if !moves_on {
                     self.in_vain.insert((v, lengths), view.ring);
                 }
             }
@@ -146,7 +159,7 @@ impl<M: Moving> Mending<M> {
         let limits = ring.limits(dual, v, lengths);
         let is_in_vain = self.in_vain.get(&(v, lengths)) == Some(&ring);
         let better = if is_in_vain { Vec::new() } else { ring.better(dual, v, limits) };
-        View { links: links(dual, v).collect(), ring, limits, better }
+        View { links: links(dual, v).collect(), ring, better }
     }
 }
 
@@ -155,7 +168,6 @@ struct View<S> {
     /// The triangles by their other corners.
     links: Vec<[VertexId; 2]>,
     ring: Ring<S>,
-    limits: Limits,
     /// Moves by which the least quality there is greater, the best first.
     better: Vec<Vector>,
 }
@@ -181,23 +193,6 @@ impl<S: Copy + PartialEq + Send + Sync> View<S> {
     fn holds<M: Moving<Site = S>>(&self, dual: &M, v: VertexId, moved: &[VertexId]) -> bool {
         let is_there = |u: &VertexId| !moved.contains(u);
         self.links.iter().copied().eq(links(dual, v)) && is_there(&v) && self.links.as_flattened().iter().all(is_there)
-    }
-
-    /// Climbs from one trial to the next; says whether the seed has moved.
-    fn climb<M: Moving<Site = S>>(&mut self, dual: &mut M, v: VertexId) -> bool {
-        let mut has_moved = false;
-        for _ in 0..MOVES {
-            let known = std::mem::take(&mut self.better);
-            let better = if has_moved { self.ring.better(dual, v, self.limits) } else { known };
-            if !better.into_iter().any(|by| dual.shift_by(v, by)) {
-                break;
-            }
-            has_moved = true;
-        }
-        if has_moved {
-            dual.settle_move(v);
-        }
-        has_moved
     }
 }
 

@@ -3,6 +3,7 @@
 use super::faults::Fault;
 use crate::geometry::{Aabb, Bounds, Corners, Orientation, Point, Point3, contacts, meeting_pairs, orientation};
 use crate::mesh::{Edges, Mesh};
+use crate::parallel::prelude::*;
 
 /// Two triangles that meet, the smaller number first.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +32,7 @@ impl Pair {
 /// on each other count. Needs finite positions and triangles that are not flat.
 pub(super) fn pairs(mesh: &Mesh) -> Vec<Pair> {
     let corners = |&t: &[u32; 3]| Corners { vertices: t, points: mesh.positions_of(t) };
-    let corners: Vec<Corners> = mesh.triangles.iter().map(corners).collect();
+    let corners: Vec<Corners> = mesh.triangles.par_iter().with_min_len(1024).map(corners).collect();
     contacts(&corners, |_| true).into_iter().map(|(triangles, at)| Pair { triangles, at }).collect()
 }
 

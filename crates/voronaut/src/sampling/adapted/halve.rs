@@ -43,13 +43,9 @@ pub(crate) fn halved(input: &Input, metric: &dyn SurfaceMetric, halving: &Halvin
 impl Work<'_> {
     /// Edges inside patches that are longer than so much, no more than so many, and the vertices in their middles.
     fn longest(&self, longer: f64, most: usize) -> Vec<([VertexId; 2], Option<Vertex>)> {
-        let t = &self.topology;
-        let edges = t.edges_with(|h| t.twin(h).is_some());
-        let measured = edges.into_par_iter().with_min_len(256).map(|h| (self.length_of(h), h));
-        let mut long: Vec<(f64, HalfEdge)> = measured.filter(|(length, _)| *length > longer).collect();
-        long.sort_by(|x, y| y.0.total_cmp(&x.0).then(x.1.cmp(&y.1)));
+        let mut long = self.longest_first(|h| self.exceeds(h, longer));
         long.truncate(most);
-        let middle = |&(_, h): &(f64, HalfEdge)| (t.ends(h), self.middle(h));
+        let middle = |&h: &HalfEdge| (self.topology.ends(h), self.middle(h));
         long.par_iter().with_min_len(16).map(middle).collect()
     }
 

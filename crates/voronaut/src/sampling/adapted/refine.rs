@@ -5,6 +5,7 @@ use super::work::{Vertex, Work, leaning, quality};
 use crate::geometry::NEEDLE;
 use crate::parallel::prelude::*;
 use crate::triangulation::{Flipping, HalfEdge, Lawson, Limit, Triangulation, VertexId};
+use std::cmp::Reverse;
 
 /// Edges longer than this (metric) are split: contraction then has vertices to choose from.
 const LONG: f64 = 1.0;
@@ -36,10 +37,8 @@ impl Work<'_> {
 
     /// Splits edges longer than so much, no more than so many; the vertices on them.
     pub(super) fn split_once(&mut self, longer: f64, most: usize) -> Vec<VertexId> {
-        let long = self.topology.edges_with(|h| self.is_long(h, longer)).into_par_iter().with_min_len(256);
-        let mut long: Vec<(f64, HalfEdge)> = long.map(|h| (self.length_of(h), h)).collect();
-        long.sort_by(|x, y| y.0.total_cmp(&x.0).then(x.1.cmp(&y.1)));
-        let long: Vec<(HalfEdge, [VertexId; 2])> = long.into_iter().map(|(_, h)| (h, self.topology.ends(h))).collect();
+        let long = self.longest_first(|h| self.is_long(h, longer)).into_iter();
+        let long: Vec<(HalfEdge, [VertexId; 2])> = long.map(|h| (h, self.topology.ends(h))).collect();
         let (mut new, mut next) = (Vec::new(), long.as_slice());
         while new.len() < most && !next.is_empty() {
             // Not many more middles are looked for than may be wanted.
@@ -60,9 +59,24 @@ impl Work<'_> {
         new
     }
 
-    pub(super) fn length_of(&self, h: HalfEdge) -> f64 {
+    /// The edges for which something holds, the longest first.
+    pub(super) fn longest_first(&self, holds: impl Fn(HalfEdge) -> bool + Sync) -> Vec<HalfEdge> {
+        let edges = self.topology.edges_with(holds).into_par_iter().with_min_len(256);
+        // Bits of positive numbers are in their order.
+        let mut keyed: Vec<(Reverse<u64>, HalfEdge)> =
+            edges.map(|h| (Reverse(self.length_of(h).to_bits()), h)).collect();
+        keyed.par_sort_unstable();
+        keyed.into_iter().map(|(_, h)| h).collect()
+    }
+
+    fn length_of(&self, h: HalfEdge) -> f64 {
         let [v, w] = self.topology.ends(h);
         self.length(v, w)
+    }
+
+    /// Whether an edge inside a patch is longer than so much.
+    pub(super) fn exceeds(&self, h: HalfEdge, length: f64) -> bool {
+        self.topology.twin(h).is_some() && self.length_of(h) > length
     }
 
     fn is_long(&self, h: HalfEdge, longer: f64) -> bool {

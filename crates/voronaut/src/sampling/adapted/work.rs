@@ -185,18 +185,18 @@ impl<'a> Work<'a> {
 
     pub(super) fn finished(self) -> Adapted {
         let t = &self.topology;
-        let rank = |v: &VertexId| {
-            let vertex = self.at(*v);
-            (vertex.given.unwrap_or(u32::MAX), !vertex.is_held, *v)
+        let ranked = |v: VertexId| {
+            let vertex = self.at(v);
+            (vertex.given.unwrap_or(u32::MAX), !vertex.is_held, v)
         };
-        let mut order: Vec<VertexId> = t.vertices().collect();
-        order.sort_by_key(rank);
+        let mut order: Vec<(u32, bool, VertexId)> = t.vertices().map(ranked).collect();
+        order.par_sort_unstable();
         let mut number = vec![u32::MAX; t.vertex_slots()];
-        for (i, v) in (0..).zip(&order) {
+        for (i, (_, _, v)) in (0..).zip(&order) {
             number[v.index()] = i;
         }
-        let places: Vec<Place> = order.iter().map(|&v| self.at(v).place).collect();
-        let staying = order.iter().filter(|&&v| !self.at(v).may_go()).count();
+        let places: Vec<Place> = order.iter().map(|&(_, _, v)| self.at(v).place).collect();
+        let staying = order.iter().filter(|(_, _, v)| !self.at(*v).may_go()).count();
         let triangles: Vec<[u32; 3]> = t.faces().map(|f| t.corners(f).map(|v| number[v.index()])).collect();
         let topology = Triangulation::from_triangles(places.len(), &triangles, &vec![0; triangles.len()]);
         Adapted { places, staying, topology, stuck: self.stuck() }
