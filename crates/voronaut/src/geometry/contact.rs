@@ -1,10 +1,10 @@
 //! Whether two triangles in space meet where they should not, by exact predicates.
 
 use super::tree::boxes_meet;
-use crate::parallel::prelude::*;
 use super::{
     Aabb3, Bounds, Orientation, Point, Point3, around, meeting_pairs, orientation, signed_area, signed_volume,
 };
+use crate::parallel::prelude::*;
 
 /// A triangle that is not flat, by the numbers and the positions of its corners.
 #[derive(Clone, Copy, Debug)]

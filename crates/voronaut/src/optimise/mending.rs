@@ -5,8 +5,8 @@ use crate::elementary::Elementary;
 use crate::geometry::{NEEDLE, Vector, from_frame};
 use crate::lists::{distinct, least_ranked, marked, ranked};
 use crate::parallel::prelude::*;
-use crate::triangulation::{FaceId, HalfEdge, VertexId};
-use std::collections::BTreeMap;
+use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 /// Lengths of the moves that are tried (metric length), and directions of each.
 const LENGTHS: [f64; 4] = [0.2, 0.1, 0.05, SHORTEST];
@@ -109,48 +109,32 @@ impl<M: Moving> Mending<M> {
         });
     }
 
-    /// Moves free corners of triangles, each from one trial to the next. Returns how many moved.
+    /// Moves free corners of triangles, each once. Returns how many moved.
     ///
-    /// Many are looked at before the first one moves; those whose neighbours have changed by their turn are looked at again with the next, as are
-    /// those that have moved.
+    /// Many that are no neighbours are looked at before the first one moves; those whose triangles were flipped by their turn are looked at again.
     fn corners(&mut self, dual: &mut M, triangles: Vec<(f64, [VertexId; 3])>, lengths: Lengths) -> usize {
         let mut is_new = vec![true; dual.topology().vertex_slots()];
         let corners = triangles.into_iter().flat_map(|(_, corners)| corners);
         let free = corners.filter(|&v| dual.kind(v) == Kind::Free && std::mem::take(&mut is_new[v.index()]));
-        // With the moves they have made.
-        let free: Vec<(VertexId, usize)> = free.map(|v| (v, 0)).collect();
-        let (mut next, mut again, mut count) = (free.into_iter(), Vec::new(), 0);
-        loop {
-            let mut together: Vec<(VertexId, usize)> = std::mem::take(&mut again);
-            together.extend(next.by_ref().take(TOGETHER.saturating_sub(together.len())));
-            if together.is_empty() {
-                return count;
-            }
-            let views = together.par_iter().map(|&(v, _)| self.view(dual, v, lengths));
+        let mut queue: VecDeque<VertexId> = free.collect();
+        let mut count = 0;
+        while !queue.is_empty() {
+            let together = apart(dual.topology(), &mut queue);
+            let views = together.par_iter().map(|&v| self.view(dual, v, lengths));
             let views: Vec<View<M::Site>> = views.collect();
-            let before = self.moved.len();
-            for ((v, moves), view) in together.into_iter().zip(views) {
-                if !view.holds(dual, v, &self.moved[before..]) {
-                    again.push((v, moves));
-                    continue;
-                }
-                let moves_on = view.better.iter().any(|&by| dual.shift_by(v, by));
-                if moves_on {
-                    self.moved.push(v);
-                    count += usize::from(moves == 0);
-                }
-                if moves_on && moves + 1 < MOVES {
-                    again.push((v, moves + 1));
-                    continue;
-                }
-                if moves_on || moves > 0 {
+            for (v, view) in together.into_iter().zip(views) {
+                if !links(dual, v).eq(view.links) {
+                    queue.push_front(v);
+                } else if view.better.iter().any(|&by| dual.shift_by(v, by)) {
                     dual.settle_move(v);
-                }
-                if !moves_on {
+                    self.moved.push(v);
+                    count += 1;
+                } else {
                     self.in_vain.insert((v, lengths), view.ring);
                 }
             }
         }
+        count
     }
 
     /// What is around a seed, and where it would be better.
@@ -158,7 +142,7 @@ impl<M: Moving> Mending<M> {
         let ring = Ring::of(dual, v);
         let limits = ring.limits(dual, v, lengths);
         let is_in_vain = self.in_vain.get(&(v, lengths)) == Some(&ring);
-        let better = if is_in_vain { Vec::new() } else { ring.better(dual, v, limits) };
+        let better = if is_in_vain { Vec::new() } else { ring.climbed(dual, v, limits) };
         View { links: links(dual, v).collect(), ring, better }
     }
 }
@@ -188,14 +172,6 @@ struct Ring<S> {
     links: Vec<[S; 2]>,
 }
 
-impl<S: Copy + PartialEq + Send + Sync> View<S> {
-    /// Whether it is as it was, but for seeds that have moved.
-    fn holds<M: Moving<Site = S>>(&self, dual: &M, v: VertexId, moved: &[VertexId]) -> bool {
-        let is_there = |u: &VertexId| !moved.contains(u);
-        self.links.iter().copied().eq(links(dual, v)) && is_there(&v) && self.links.as_flattened().iter().all(is_there)
-    }
-}
-
 impl<S: Copy + PartialEq + Send + Sync> Ring<S> {
     fn of<M: Moving<Site = S>>(dual: &M, v: VertexId) -> Self {
         let link = |[a, b]: [VertexId; 2]| [dual.ready(dual.site(a)), dual.site(b)];
@@ -220,10 +196,29 @@ impl<S: Copy + PartialEq + Send + Sync> Ring<S> {
         Limits { misfit: misfits.fold(UNIT, f64::max), quality }
     }
 
-    /// Moves of the seed at the centre, from where it is now, by which the least quality is greater, the best first.
-    fn better<M: Moving<Site = S>>(&self, dual: &M, v: VertexId, limits: Limits) -> Vec<Vector> {
+    /// Moves of the seed at the centre by which the least quality is greater, the best first: where one trial after the other leads to, then what
+    /// the first trials find.
+    fn climbed<M: Moving<Site = S>>(&self, dual: &M, v: VertexId, limits: Limits) -> Vec<Vector> {
+        let mut better = self.better(dual, v, dual.site(v), Vector::default(), limits);
+        for _ in 1..MOVES {
+            let further = better.first().and_then(|&by| Some((by, dual.site_after(v, by)?)));
+            let further = further.and_then(|(by, here)| self.better(dual, v, here, by, limits).first().copied());
+            let Some(by) = further else { break };
+            better.insert(0, by);
+        }
+        better
+    }
+
+    /// Moves of the seed at the centre by which the least quality is greater than after it has moved already, the best first.
+    fn better<M: Moving<Site = S>>(
+        &self,
+        dual: &M,
+        v: VertexId,
+        here: S,
+        moved: Vector,
+        limits: Limits,
+    ) -> Vec<Vector> {
         // The poorest triangle first: it tells of most trials that they are no better.
-        let here = dual.site(v);
         let by_quality = ranked(self.links.iter().zip(0..).map(|(&[a, b], i)| (dual.quality([here, a, b]), i)));
         let now = by_quality.first().map_or(f64::NEG_INFINITY, |&(quality, _)| quality);
         let links: Vec<[S; 2]> = by_quality.into_iter().map(|(_, i): (f64, usize)| self.links[i]).collect();
@@ -236,11 +231,13 @@ impl<S: Copy + PartialEq + Send + Sync> Ring<S> {
         };
         // Where the metric is even, quality is nowhere less on the way to a place where it is greater: triangles of at least some quality have their
         // corners in convex sets.
-        let rises =
-            |by: &Vector| now < 0.0 || dual.site_after(v, *by * SHORTEST).is_some_and(|at| least(at, now).is_some());
+        let rises = |by: &Vector| {
+            now < 0.0 || dual.site_after(v, moved + *by * SHORTEST).is_some_and(|at| least(at, now).is_some())
+        };
         let ways = ways(dual.local(v).tensor.cholesky());
         let rising: Vec<Vector> = ways.into_par_iter().with_min_len(WAYS / 4).filter(rises).collect();
-        let tried: Vec<Vector> = LENGTHS.iter().flat_map(|&length| rising.iter().map(move |&by| by * length)).collect();
+        let tried: Vec<Vector> =
+            LENGTHS.iter().flat_map(|&length| rising.iter().map(move |&by| moved + by * length)).collect();
         let most = if now < limits.quality { f64::INFINITY } else { limits.misfit };
         let gained = |&by: &Vector| {
             let site = dual.site_after(v, by)?;
@@ -252,6 +249,23 @@ impl<S: Copy + PartialEq + Send + Sync> Ring<S> {
         let better = ranked(gains.into_iter().enumerate().filter_map(|(i, gain)| Some((-gain?, i))));
         better.into_iter().map(|(_, i)| tried[i]).collect()
     }
+}
+
+/// Takes seeds from the front of a queue of which no two are neighbours; those passed over stay in front.
+fn apart(topology: &Triangulation, queue: &mut VecDeque<VertexId>) -> Vec<VertexId> {
+    let (mut taken, mut passed, mut beside) = (Vec::new(), Vec::new(), BTreeSet::new());
+    while taken.len().max(passed.len()) < TOGETHER
+        && let Some(v) = queue.pop_front()
+    {
+        if beside.contains(&v) {
+            passed.push(v);
+        } else {
+            beside.extend(topology.star(v).map(|h| topology.target(h)));
+            taken.push(v);
+        }
+    }
+    passed.into_iter().rev().for_each(|v| queue.push_front(v));
+    taken
 }
 
 /// The triangles around a seed by their other corners.
