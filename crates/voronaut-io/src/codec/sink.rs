@@ -135,9 +135,15 @@ impl<'a> Sink<'a> {
             }
             rows
         };
+        // All threads of the pool may be waiting for one that is none of them.
+        let is_of_pool = rayon::current_thread_index().is_some();
         let firsts: Vec<usize> = (0..count).step_by(ROWS).collect();
         for firsts in firsts.chunks(PARTS) {
-            let parts: Vec<Rows> = firsts.par_iter().map(|&first| part(first)).collect();
+            let parts: Vec<Rows> = if is_of_pool {
+                firsts.par_iter().map(|&first| part(first)).collect()
+            } else {
+                firsts.iter().map(|&first| part(first)).collect()
+            };
             for rows in parts {
                 self.rows = rows;
                 self.end_row()?;
@@ -205,15 +211,20 @@ mod tests {
     #[test]
     fn many_rows_are_as_those_one_by_one() {
         let count = 2 * ROWS * PARTS + 7;
-        for form in [Form::Text, Form::Binary] {
-            let [mut one_by_one, mut at_once] = [Vec::new(), Vec::new()];
-            let mut sink = Sink::new(form, &mut one_by_one);
-            (0..count).for_each(|i| sink.row((0..i % 3).map(|k| (i + k) as u32)).unwrap());
-            let mut other = Sink::new(form, &mut at_once);
-            other.rows(count, |rows, i| rows.put_all((0..i % 3).map(|k| (i + k) as u32))).unwrap();
-            assert_eq!(sink.written(), other.written());
-            assert_eq!(one_by_one, at_once);
-        }
+        let numbers = |i: usize| (0..i % 3).map(move |k| (i + k) as u32);
+        let check = || {
+            for form in [Form::Text, Form::Binary] {
+                let [mut one_by_one, mut at_once] = [Vec::new(), Vec::new()];
+                let mut sink = Sink::new(form, &mut one_by_one);
+                (0..count).for_each(|i| sink.row(numbers(i)).unwrap());
+                let mut other = Sink::new(form, &mut at_once);
+                other.rows(count, |rows, i| rows.put_all(numbers(i))).unwrap();
+                assert_eq!(sink.written(), other.written());
+                assert_eq!(one_by_one, at_once);
+            }
+        };
+        check();
+        rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap().install(check);
     }
 
     #[test]
