@@ -387,9 +387,9 @@ def surfaces(typed):
     little, `-hmax`) gives as many vertices, found by bisection that does not count, and geogram's `remesh:anisotropy=0.02`. Judged in
     the metric of curvature, scaled to each mesh's number of vertices, and in the one that mmgs wrote beside its mesh; distances are
     between mesh and model, both ways, in diagonals."""
-    smooth, parts = [ROOT / "data/spot.obj", ROOT / "data/bob_small.obj"], sorted((ROOT / "data/parts").glob("*.mesh"))
-    for size in typed.sizes or [2000, 6000, 100000]:
-        yield from (surface(typed, model, size) for model in [*smooth, *(parts if size < 100000 else [])])
+    models = [ROOT / "data/spot.obj", ROOT / "data/bob_small.obj", *sorted((ROOT / "data/parts").glob("*.mesh"))]
+    for size in typed.sizes or [2000, 6000]:
+        yield from (surface(typed, model, size) for model in models)
 
 
 def surface(typed, model, size):
