@@ -111,7 +111,7 @@ const ROWS: &[Row] = &[
     each(&["--periodic", "4,2"], [Mesh, Refused("--periodic"), Refused("--periodic")]),
     plane(STARS, &["--periodic", "4,2"], Refused("--periodic")),
     each(&["--required"], [Mesh, Refused("--required"), Refused("--required")]),
-    all(&[], &["--effort", "fast"], Mesh),
+    all(&[], &["--effort", "best"], Mesh),
     all(&[], &["--lloyd", "0"], Mesh),
     plane(STARS, &["--lloyd", "0"], Mesh),
     all(&[], &["--centroid", "canvas", "--canvas-size", "3"], Mesh),

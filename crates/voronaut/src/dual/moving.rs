@@ -3,7 +3,7 @@
 
 use super::{Dual, Effort, Kind};
 use crate::error::Result;
-use crate::geodesic::LocalMetric;
+use crate::geodesic::{LocalMetric, chord_near};
 use crate::geometry::{Point, Tensor, Vector};
 use crate::metric::MetricField;
 use crate::parallel::{copy_over, prelude::*};
@@ -75,6 +75,10 @@ pub(crate) trait Moving: Sync {
     fn quality(&self, corners: [Self::Site; 3]) -> f64;
     /// The metric length of a straight edge.
     fn straight_length(&self, ends: [Self::Site; 2]) -> f64;
+    /// The same as a mesh's is measured, by the metric along it; the first end is near a seed.
+    fn chord(&self, _near: VertexId, ends: [Self::Site; 2]) -> f64 {
+        self.straight_length(ends)
+    }
     /// A site that several edges are measured from, with what these have in common.
     fn ready(&self, site: Self::Site) -> Self::Site {
         site
@@ -234,6 +238,10 @@ impl Moving for Dual<'_> {
 
     fn straight_length(&self, [a, b]: [Site; 2]) -> f64 {
         ((a.log + b.log) * 0.5).exp().length(b.at - a.at)
+    }
+
+    fn chord(&self, near: VertexId, [a, b]: [Site; 2]) -> f64 {
+        chord_near(self.field(), a.at, b.at, self.local(near).near)
     }
 
     fn settle_move(&mut self, v: VertexId) {

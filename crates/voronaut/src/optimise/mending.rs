@@ -1,4 +1,5 @@
-//! The worst triangles mended: their corners move to where the least quality of the triangles around them is greatest.
+//! The worst triangles mended: their corners move to where the least quality of the triangles around them is greatest. And seeds moved to where more of
+//! their edges are of unit length.
 
 use crate::dual::{Kind, Moving, sites};
 use crate::elementary::Elementary;
@@ -7,6 +8,7 @@ use crate::lists::{distinct, least_ranked, marked, ranked};
 use crate::parallel::prelude::*;
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 /// Lengths of the moves that are tried (metric length), and directions of each.
 const LENGTHS: [f64; 4] = [0.2, 0.1, 0.05, SHORTEST];
@@ -18,6 +20,9 @@ const GAIN: f64 = 1e-3;
 const UNIT: f64 = 0.3;
 /// Below this quality lengths do not count beside an edge that must stay whole and is too long: every way off it may make others worse.
 const POOR: f64 = 2.0 * NEEDLE;
+/// So much the mean quality around a seed may fall where more of its edges are of unit length then. With 0 the share of these rises by a quarter less (a hard
+/// shock of 4,000 vertices, 45 %: 51 % for 54 %), with 0.02 mean quality falls by a hundredth where the metric is not resolved.
+const LOSS: f64 = 5e-3;
 /// Moves of one seed.
 const MOVES: usize = 6;
 /// So many seeds are looked at together, on all cores, before the first of them moves.
@@ -30,7 +35,7 @@ const TOGETHER: usize = 256;
 /// next the metric's factor stays, and seeds where they are; edges may be flipped.
 pub(crate) struct Mending<M: Moving> {
     /// Of seeds that no trial was better for: where they and their neighbours were.
-    in_vain: BTreeMap<(VertexId, Lengths), Ring<M::Site>>,
+    in_vain: BTreeMap<(VertexId, Purpose), Ring<M::Site>>,
     /// The seeds' sites, by id.
     sites: Vec<M::Site>,
     /// Seeds that have moved since.
@@ -39,13 +44,15 @@ pub(crate) struct Mending<M: Moving> {
     faces: Vec<([VertexId; 3], f64)>,
 }
 
-/// What counts where a triangle is a needle.
+/// What a seed moves for.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Lengths {
-    /// That no edge leaves the unit range.
-    Kept,
-    /// That it is none any more.
-    AfterNeedles,
+enum Purpose {
+    /// The least quality around it, where no edge leaves the unit range.
+    Quality,
+    /// The same, and where a triangle is a needle whatever edges become.
+    Needles,
+    /// Unit edges, where triangles are no worse.
+    Lengths,
 }
 
 impl<M: Moving> Default for Mending<M> {
@@ -58,14 +65,28 @@ impl<M: Moving> Mending<M> {
     /// Moves the free corners of the poorest triangles, at most so many. Returns how many seeds moved.
     pub(crate) fn worst(&mut self, dual: &mut M, most: usize) -> usize {
         let poorest = least_ranked(self.below(dual, f64::INFINITY), most);
-        self.corners(dual, poorest, Lengths::Kept)
+        self.corners(dual, poorest, Purpose::Quality)
     }
 
     /// The same of all triangles that are needles, or nearly, whatever lengths become: what the mesh is measured by asks for the metric at the closest
     /// places, and may find less.
     pub(crate) fn needles(&mut self, dual: &mut M) -> usize {
         let poor = ranked(self.below(dual, POOR));
-        self.corners(dual, poor, Lengths::AfterNeedles)
+        self.corners(dual, poor, Purpose::Needles)
+    }
+
+    /// Moves free ends of edges that are not of unit length, each once. Returns how many moved.
+    pub(crate) fn lengths(&mut self, dual: &mut M) -> usize {
+        self.measure(dual);
+        let topology = dual.topology();
+        let edges = topology.edges_with(|_| true);
+        let is_off = |&&h: &&HalfEdge| {
+            let [u, v] = topology.ends(h);
+            !is_unit(dual.chord(u, [u, v].map(|v| self.sites[v.index()])))
+        };
+        let off: Vec<HalfEdge> = edges.par_iter().with_min_len(256).filter(is_off).copied().collect();
+        let ends = off.into_iter().flat_map(|h| topology.ends(h)).collect();
+        self.move_each(dual, ends, Purpose::Lengths)
     }
 
     /// The edges of needles.
@@ -109,28 +130,32 @@ impl<M: Moving> Mending<M> {
         });
     }
 
-    /// Moves free corners of triangles, each once. Returns how many moved.
+    fn corners(&mut self, dual: &mut M, triangles: Vec<(f64, [VertexId; 3])>, purpose: Purpose) -> usize {
+        self.move_each(dual, triangles.into_iter().flat_map(|(_, corners)| corners).collect(), purpose)
+    }
+
+    /// Moves the free ones of some seeds, each once. Returns how many moved.
     ///
     /// Many that are no neighbours are looked at before the first one moves; those whose triangles were flipped by their turn are looked at again.
-    fn corners(&mut self, dual: &mut M, triangles: Vec<(f64, [VertexId; 3])>, lengths: Lengths) -> usize {
+    fn move_each(&mut self, dual: &mut M, seeds: Vec<VertexId>, purpose: Purpose) -> usize {
         let mut is_new = vec![true; dual.topology().vertex_slots()];
-        let corners = triangles.into_iter().flat_map(|(_, corners)| corners);
-        let free = corners.filter(|&v| dual.kind(v) == Kind::Free && std::mem::take(&mut is_new[v.index()]));
+        let free = seeds.into_iter().filter(|&v| dual.kind(v) == Kind::Free && std::mem::take(&mut is_new[v.index()]));
         let mut queue: VecDeque<VertexId> = free.collect();
         let mut count = 0;
         while !queue.is_empty() {
             let together = apart(dual.topology(), &mut queue);
-            let views = together.par_iter().map(|&v| self.view(dual, v, lengths));
+            let views = together.par_iter().map(|&v| self.view(dual, v, purpose));
             let views: Vec<View<M::Site>> = views.collect();
             for (v, view) in together.into_iter().zip(views) {
-                if !links(dual, v).eq(view.links) {
+                if !view.is_of(dual, v) {
                     queue.push_front(v);
-                } else if view.better.iter().any(|&by| dual.shift_by(v, by)) {
+                } else if let Some(&by) = view.better.iter().find(|&&by| dual.shift_by(v, by)) {
                     dual.settle_move(v);
                     self.moved.push(v);
-                    count += 1;
-                } else {
-                    self.in_vain.insert((v, lengths), view.ring);
+                    count +=
+                        usize::from(purpose != Purpose::Lengths || view.is_worth(dual, v) || !went_back(dual, v, by));
+                } else if purpose != Purpose::Lengths {
+                    self.in_vain.insert((v, purpose), view.ring);
                 }
             }
         }
@@ -138,11 +163,13 @@ impl<M: Moving> Mending<M> {
     }
 
     /// What is around a seed, and where it would be better.
-    fn view(&self, dual: &M, v: VertexId, lengths: Lengths) -> View<M::Site> {
+    fn view(&self, dual: &M, v: VertexId, purpose: Purpose) -> View<M::Site> {
         let ring = Ring::of(dual, v);
-        let limits = ring.limits(dual, v, lengths);
-        let is_in_vain = self.in_vain.get(&(v, lengths)) == Some(&ring);
-        let better = if is_in_vain { Vec::new() } else { ring.climbed(dual, v, limits) };
+        let better = match purpose {
+            _ if self.in_vain.get(&(v, purpose)) == Some(&ring) => Vec::new(),
+            Purpose::Lengths => ring.fitter(dual, v),
+            _ => ring.climbed(dual, v, ring.limits(dual, v, purpose)),
+        };
         View { links: links(dual, v).collect(), ring, better }
     }
 }
@@ -154,6 +181,36 @@ struct View<S> {
     ring: Ring<S>,
     /// Moves by which the least quality there is greater, the best first.
     better: Vec<Vector>,
+}
+
+impl<S: Copy + PartialEq + Send + Sync> View<S> {
+    /// Whether the triangles around the seed are those that were seen.
+    fn is_of<M: Moving<Site = S>>(&self, dual: &M, v: VertexId) -> bool {
+        links(dual, v).eq(self.links.iter().copied())
+    }
+
+    /// Whether a seed that has moved for the sake of lengths is better off: edges may have been flipped.
+    fn is_worth<M: Moving<Site = S>>(&self, dual: &M, v: VertexId) -> bool {
+        let fit = |ring: &Ring<S>| ring.fit(dual, v, ring.centre, f64::NEG_INFINITY);
+        self.is_of(dual, v) || fit(&Ring::of(dual, v)).zip(fit(&self.ring)).is_some_and(|(now, was)| now.is_worth(&was))
+    }
+}
+
+/// How fit the triangles around a seed are.
+#[derive(Clone, Copy, Debug)]
+struct Fit {
+    /// The share of its edges that are of unit length.
+    unit: f64,
+    /// In the mean.
+    quality: f64,
+    least: f64,
+}
+
+impl Fit {
+    /// Whether it is worth a move: more unit edges, and triangles that are hardly worse in the mean, none poorer than the poorest was.
+    fn is_worth(&self, was: &Self) -> bool {
+        self.unit > was.unit && self.quality >= was.quality - LOSS && self.least >= was.least
+    }
 }
 
 /// How far edges may leave the unit range for the sake of quality.
@@ -180,7 +237,7 @@ impl<S: Copy + PartialEq + Send + Sync> Ring<S> {
 
     /// No edge may leave the unit range, or get farther out, unless needles come first, or the quality is poor beside an edge that must stay whole
     /// and is too long.
-    fn limits<M: Moving<Site = S>>(&self, dual: &M, v: VertexId, lengths: Lengths) -> Limits {
+    fn limits<M: Moving<Site = S>>(&self, dual: &M, v: VertexId, purpose: Purpose) -> Limits {
         let topology = dual.topology();
         let is_long = |h: HalfEdge| {
             let ends = topology.ends(h).map(|u| dual.site(u));
@@ -188,12 +245,37 @@ impl<S: Copy + PartialEq + Send + Sync> Ring<S> {
         };
         let is_beside = topology.star(v).any(|h| is_long(h.next()));
         let misfits = self.links.iter().map(|&[u, _]| misfit(dual, [self.centre, u]));
-        let quality = match lengths {
+        let quality = match purpose {
             _ if is_beside => POOR,
-            Lengths::AfterNeedles => NEEDLE,
-            Lengths::Kept => f64::NEG_INFINITY,
+            Purpose::Needles => NEEDLE,
+            _ => f64::NEG_INFINITY,
         };
         Limits { misfit: misfits.fold(UNIT, f64::max), quality }
+    }
+
+    /// How fit the triangles would be if the seed at the centre were there, unless one is of less quality.
+    fn fit<M: Moving<Site = S>>(&self, dual: &M, v: VertexId, site: S, floor: f64) -> Option<Fit> {
+        let mut qualities = self.links.iter().map(|&[a, b]| dual.quality([site, a, b]));
+        let (least, sum) = qualities.try_fold((f64::INFINITY, 0.0), |(least, sum), quality| {
+            (quality >= floor).then_some((quality.min(least), sum + quality))
+        })?;
+        let unit = self.links.iter().filter(|&&[u, _]| is_unit(dual.chord(v, [site, u]))).count();
+        let [unit, quality] = [unit as f64, sum].map(|sum| sum / self.links.len() as f64);
+        Some(Fit { unit, quality, least })
+    }
+
+    /// Moves of the seed at the centre after which more of its edges are of unit length, the best first.
+    fn fitter<M: Moving<Site = S>>(&self, dual: &M, v: VertexId) -> Vec<Vector> {
+        let Some(now) = self.fit(dual, v, self.centre, f64::NEG_INFINITY) else { return Vec::new() };
+        let ways = ways(dual.local(v).tensor.cholesky());
+        let tried: Vec<Vector> = LENGTHS.iter().flat_map(|&length| ways.iter().map(move |&by| by * length)).collect();
+        let fit = |&by: &Vector| self.fit(dual, v, dual.site_after(v, by)?, now.least);
+        let fits: Vec<Option<Fit>> = tried.par_iter().with_min_len(WAYS / 2).map(fit).collect();
+        let better =
+            tried.into_iter().zip(fits).filter_map(|(by, fit)| Some((by, fit.filter(|fit| fit.is_worth(&now))?)));
+        let mut better: Vec<(Vector, Fit)> = better.collect();
+        better.sort_by(|(_, a), (_, b)| b.unit.total_cmp(&a.unit).then(b.quality.total_cmp(&a.quality)));
+        better.into_iter().map(|(by, _)| by).collect()
     }
 
     /// Moves of the seed at the centre by which the least quality is greater, the best first: where one trial after the other leads to, then what
@@ -268,10 +350,24 @@ fn apart(topology: &Triangulation, queue: &mut VecDeque<VertexId>) -> Vec<Vertex
     taken
 }
 
+/// Moves a seed back; says whether it did.
+fn went_back<M: Moving>(dual: &mut M, v: VertexId, by: Vector) -> bool {
+    let is_back = dual.shift_by(v, -by);
+    if is_back {
+        dual.settle_move(v);
+    }
+    is_back
+}
+
 /// The triangles around a seed by their other corners.
 fn links<M: Moving>(dual: &M, v: VertexId) -> impl Iterator<Item = [VertexId; 2]> {
     let topology = dual.topology();
     topology.star(v).map(|h| [topology.target(h), topology.apex(h)])
+}
+
+/// Whether an edge of this length is a unit edge.
+fn is_unit(length: f64) -> bool {
+    (FRAC_1_SQRT_2..=SQRT_2).contains(&length)
 }
 
 /// The size of the logarithm of an edge's length.
@@ -286,4 +382,42 @@ fn ways(frame: [f64; 3]) -> Vec<Vector> {
         from_frame(frame, Vector::new(cosine, sine))
     };
     (0..WAYS).map(way).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::springs::tests::seeded;
+    use super::*;
+    use crate::domain::Domain;
+    use crate::dual::Dual;
+    use crate::geometry::{Point, Tensor};
+    use crate::metric::{MetricField, Shock};
+
+    /// Of all edges and triangles.
+    fn fit(dual: &Dual) -> Fit {
+        let topology = dual.topology();
+        let lengths =
+            topology.edges().map(|h| topology.ends(h)).map(|[u, v]| dual.chord(u, [u, v].map(|v| dual.site(v))));
+        let unit = lengths.filter(|&length| is_unit(length)).count() as f64 / topology.edges().count() as f64;
+        let qualities = topology.faces().map(|f| dual.quality(topology.corners(f).map(|v| dual.site(v))));
+        let (least, sum) = qualities.fold((f64::INFINITY, 0.0), |(least, sum), q| (q.min(least), sum + q));
+        Fit { unit, quality: sum / topology.face_count() as f64, least }
+    }
+
+    #[test]
+    fn more_edges_are_of_unit_length_and_triangles_are_hardly_worse() {
+        let domain = Domain::shape("rect:-1,-1,1,1").unwrap();
+        let even = |_: Point| Tensor::new(9.0, 2.0, 1.0);
+        let fields: [&dyn MetricField; 3] =
+            [&Shock { phi: 1.0, lambda: 0.6 }, &Shock { phi: 10.0, lambda: 0.3 }, &even];
+        for (field, more) in fields.into_iter().zip([0.02, 0.05, 0.0]) {
+            let mut dual = seeded(&domain, field);
+            let was = fit(&dual);
+            let moved = Mending::default().lengths(&mut dual);
+            let now = fit(&dual);
+            assert!(dual.planar().is_embedded());
+            assert!(moved > 0 && now.unit > was.unit + more, "{} {} {moved}", was.unit, now.unit);
+            assert!(now.quality > was.quality - LOSS && now.least >= was.least, "{now:?} {was:?}");
+        }
+    }
 }

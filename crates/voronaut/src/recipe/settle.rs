@@ -85,7 +85,7 @@ const MENDINGS: usize = 3;
 /// Relative error of the energy that tangent planes give, where all seeds are rough.
 const ROUGH_DOUBT: f64 = 0.03;
 
-/// Mends the worst triangles.
+/// Mends the worst triangles, then edges that are not of unit length.
 fn mend(dual: &mut Dual) {
     let poor = (dual.topology().face_count() as f64 * MENDED_SHARE).ceil() as usize;
     let (most, times) = if dual.unit_share() >= EVEN { (poor.max(LEAST_MENDED), MENDINGS) } else { (poor, 1) };
@@ -93,6 +93,7 @@ fn mend(dual: &mut Dual) {
     for _ in 0..times {
         mending.worst(dual, most);
     }
+    mending.lengths(dual);
 }
 
 impl Job<'_> {

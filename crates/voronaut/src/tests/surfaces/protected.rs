@@ -84,7 +84,7 @@ fn arc(p: Point3, q: Point3) -> f64 {
 #[test]
 fn seeds_of_a_sphere_are_protected_and_their_net_is_that_of_spherical_geometry() {
     let input = Input::shape("sphere:1", Some(0.1)).unwrap();
-    for protection in [0.2, 0.5] {
+    for protection in [0.35, 0.5] {
         let meshed = meshed(&input, &MeshOptions { protection, ..options(200) });
         demand_protected(&meshed, protection);
         assert_eq!((meshed.mesh.points.len(), net(&meshed).interior().count()), (200, 396));
