@@ -573,6 +573,11 @@ def benchmark_shock():
     return benchmark("shock")
 
 
+@table("mmgs_O3", "vorpalite")
+def benchmark_surfaces():
+    return benchmark("surfaces")
+
+
 @table("ffbamg")
 def benchmark_hessian():
     return benchmark("hessian")
