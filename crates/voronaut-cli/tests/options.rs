@@ -112,6 +112,7 @@ const ROWS: &[Row] = &[
     plane(STARS, &["--periodic", "4,2"], Refused("--periodic")),
     each(&["--required"], [Mesh, Refused("--required"), Refused("--required")]),
     all(&[], &["--effort", "best"], Mesh),
+    plane(&[], &["--effort", "fast"], Mesh),
     all(&[], &["--lloyd", "0"], Mesh),
     plane(STARS, &["--lloyd", "0"], Mesh),
     all(&[], &["--centroid", "canvas", "--canvas-size", "3"], Mesh),

@@ -5,10 +5,10 @@ use super::local::solved;
 use super::newton::{Aim, displace};
 use super::rules::{GAUSS, on_curve};
 use super::term::{Around, curve_at, curve_length, transposed};
+use crate::geodesic::is_unit;
 use crate::geometry::{Point, Vector, to_frame};
 use crate::metric::{MetricField, Near};
 use crate::parallel::prelude::*;
-use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 /// Steps to the least energy of a curve, at most; each gains digits, for what the metric's second derivatives say is left out.
 const STEPS: usize = 12;
@@ -26,7 +26,7 @@ pub(super) fn straighten(elements: &mut Elements, aim: &Aim) {
         elements.sides().filter(|numbers| elements.holds[numbers[1] as usize] == Hold::Free).collect();
     let steps = |numbers: &Vec<u32>| -> Vec<(u32, Vector)> {
         let old: Vec<Point> = numbers.iter().map(|&n| elements.points[n as usize]).collect();
-        let is_unit = |curve: &Vec<Point>| (FRAC_1_SQRT_2..=SQRT_2).contains(&curve_length(curve, aim.metric));
+        let is_unit = |curve: &Vec<Point>| is_unit(curve_length(curve, aim.metric));
         let new = shortest(&old, aim.metric).filter(|new| is_unit(new) || !is_unit(&old));
         let Some(new) = new else { return Vec::new() };
         (1..order).map(|i| (numbers[i], new[i] - old[i])).collect()

@@ -21,7 +21,7 @@ pub(crate) use on_surface::SurfaceDual;
 
 use crate::domain::Domain;
 use crate::error::{Error, Result};
-use crate::geodesic::{LocalMetric, Paths, chord_between, hermite};
+use crate::geodesic::{LocalMetric, Paths, chord_between, hermite, is_unit};
 use crate::geometry::{Point, Readable, Tensor};
 use crate::in_circle::Tests;
 use crate::metric::Scaled;
@@ -30,7 +30,6 @@ use crate::planar::{Location, Planar};
 use crate::triangulation::{FaceId, HalfEdge, Lawson, Limit, VertexId};
 use margin::{LEVELS, Margins};
 use std::collections::HashSet;
-use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 /// What holds a vertex in its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -288,7 +287,6 @@ impl<'a> Dual<'a> {
 
 /// The share of edges whose lengths are within a factor of sqrt(2) of one; 1 of none.
 fn unit_share(edges: &[HalfEdge], length: impl Fn(HalfEdge) -> f64 + Sync) -> f64 {
-    let is_unit = |&&h: &&HalfEdge| (FRAC_1_SQRT_2..=SQRT_2).contains(&length(h));
-    let unit = edges.par_iter().with_min_len(64).filter(is_unit).count();
+    let unit = edges.par_iter().with_min_len(64).filter(|&&h| is_unit(length(h))).count();
     if edges.is_empty() { 1.0 } else { unit as f64 / edges.len() as f64 }
 }

@@ -3,6 +3,7 @@
 use super::{LocalMetric, tension};
 use crate::geometry::{Point, Tensor, Vector};
 use crate::metric::{MetricField, Near, nearby};
+use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 /// The inner points of Lobatto's quadrature with four: (1 -+ 1/sqrt 5) / 2.
 const LOBATTO: [f64; 2] = [0.276_393_202_250_021, 0.723_606_797_749_979];
@@ -90,6 +91,11 @@ pub(crate) fn chord(field: &dyn MetricField, p: Point, q: Point) -> f64 {
 pub(crate) fn chord_by(at: impl Fn(Point) -> Tensor, p: Point, q: Point) -> f64 {
     let d = q - p;
     GAUSS.iter().map(|&(t, weight)| weight * at(p.lerp(q, t)).length(d)).sum()
+}
+
+/// Whether an edge of this metric length is a unit edge: within a factor of sqrt(2) of one.
+pub(crate) fn is_unit(length: f64) -> bool {
+    (FRAC_1_SQRT_2..=SQRT_2).contains(&length)
 }
 
 /// [`chord`] where the field may be looked for at a place near the first end.

@@ -47,7 +47,8 @@ pub(crate) use konukoglu::Konukoglu;
 pub(crate) use label::{Label, NO_COLOUR, Sources, Support};
 pub(crate) use lattice::Lattice;
 pub(crate) use length::{
-    Length, bent_chord, chord, chord_between, chord_by, chord_near, hermite, hermite_between, place_at, reached,
+    Length, bent_chord, chord, chord_between, chord_by, chord_near, hermite, hermite_between, is_unit, place_at,
+    reached,
 };
 pub(crate) use local::{LocalMetric, STILL};
 pub(crate) use march::Marching;

@@ -5,12 +5,12 @@ use super::faults::{Position, middle};
 use super::tensors::tensor_near;
 use crate::curved::Rule;
 use crate::error::{Error, Result};
+use crate::geodesic::is_unit;
 use crate::geometry::{Point, Point3, Tensor};
 use crate::lists::marked;
 use crate::mesh::{EdgeSide, Edges, Mesh};
 use crate::metric::{MetricField, Near};
 use crate::parallel::prelude::*;
-use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 /// The figures of a mesh in a metric field. They do not change when mesh and metric are pulled back by the same
 /// affine map.
@@ -240,7 +240,6 @@ pub(super) fn summed(
 impl EdgeLengths {
     /// Of lengths that can be gone through again; none of none.
     pub(super) fn of<I: Iterator<Item = f64>>(lengths: impl Fn() -> I) -> Option<Self> {
-        let is_unit = |length: &f64| (FRAC_1_SQRT_2..=SQRT_2).contains(length);
         let count = lengths().count() as f64;
         let mean = lengths().sum::<f64>() / count;
         (count > 0.0).then(|| Self {
@@ -248,7 +247,7 @@ impl EdgeLengths {
             mean,
             max: lengths().fold(f64::NEG_INFINITY, f64::max),
             std: (lengths().map(|length| (length - mean) * (length - mean)).sum::<f64>() / count).sqrt(),
-            unit_fraction: lengths().filter(is_unit).count() as f64 / count,
+            unit_fraction: lengths().filter(|&length| is_unit(length)).count() as f64 / count,
         })
     }
 }
@@ -354,6 +353,7 @@ mod tests {
     use super::super::test_meshes::{grid, lattice, mesh};
     use super::*;
     use crate::geometry::Vector;
+    use std::f64::consts::SQRT_2;
 
     fn close(a: f64, b: f64) {
         assert!((a - b).abs() <= 1e-9 * b.abs().max(1.0), "{a} is not {b}");

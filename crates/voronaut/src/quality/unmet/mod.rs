@@ -11,6 +11,7 @@ use super::surface_quality::Field;
 use crate::curved::Rule;
 use crate::elementary::Elementary;
 use crate::error::Result;
+use crate::geodesic::is_unit;
 use crate::geometry::{NEEDLE, Point, Point3, Vector};
 use crate::lists::{distinct, in_order};
 use crate::mesh::{EdgeSide, Edges, Mesh, edges_of};
@@ -20,7 +21,6 @@ use crate::surface::metric::SurfaceMetric;
 use crate::surface::{FeatureOptions, Surface};
 use forced::{Curves, Density, Forced, Judged};
 use std::collections::BTreeMap;
-use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 /// Half the logarithm of 2: unit edges have metric lengths whose logarithms are no larger than this.
 const RANGE: f64 = 0.5 * std::f64::consts::LN_2;
@@ -318,9 +318,4 @@ fn isosceles(base: f64) -> f64 {
     // 4 sqrt 3 A over the sum of the squares, A half of the base times the height.
     let height = (1.0 - 0.25 * base * base).max(0.0).sqrt();
     2.0 * 3.0_f64.sqrt() * base * height / (2.0 + base * base)
-}
-
-/// Whether a metric length is that of a unit edge.
-fn is_unit(length: f64) -> bool {
-    (FRAC_1_SQRT_2..=SQRT_2).contains(&length)
 }
