@@ -209,27 +209,27 @@ impl InCircle for ByEffort<'_, '_> {
         level >= FIRST_PATH
     }
 
-    /// The geodesic between two seeds. Where the field has kinks, one bow says as much as polynomials, and finer ones do
-    /// not help; they are tried only where the bow is large.
+    /// The geodesic between two seeds. Where the field has kinks, a bow that is small says as much as coarse polynomials, and finer ones
+    /// know whether they say more.
     fn solve(&self, i: u32, j: u32, level: usize) -> Option<Known> {
         let dual = self.dual;
         let [p, q] = [i, j].map(|i| dual.position(VertexId(i)));
-        let known = |length, level| Some(Known { length, level, is_vetoed: false });
+        let known = |length| Some(Known { length, level, is_vetoed: false });
         let mut bowed = None;
-        if level == FIRST_PATH && [i, j].iter().any(|&i| dual.local(VertexId(i)).is_rough) {
+        if [i, j].iter().any(|&i| dual.local(VertexId(i)).is_rough) {
             let (value, straight) = (bowed_chord(&dual.field, p, q), chord(&dual.field, p, q));
             let saving = straight / value - 1.0;
             let length = PathLength { value, error: KINKS + OF_BOW * saving, curvature: [0.0; 2] };
-            if saving < STRAIGHT {
-                return known(length, LEVELS);
+            if level == FIRST_PATH && saving < STRAIGHT {
+                return known(length);
             }
             bowed = Some(length);
         }
         let path = dual.paths.length(&dual.field, p, q, PATHS[level - FIRST_PATH]);
         match (path, bowed) {
-            (Some(path), Some(bowed)) if path.error > bowed.error => known(bowed, LEVELS),
-            (None, Some(bowed)) => known(bowed, LEVELS),
-            (path, _) => known(path?, level),
+            (Some(path), Some(bowed)) if path.error > bowed.error => known(bowed),
+            (None, Some(bowed)) => known(bowed),
+            (path, _) => known(path?),
         }
     }
 
