@@ -17,6 +17,10 @@ pub(crate) trait Elementary {
     fn hyperbolic_cosine(self) -> Self;
     fn hyperbolic_sine(self) -> Self;
     fn hyperbolic_tangent(self) -> Self;
+    /// And exp(-2 |x|).
+    fn hyperbolic_tangent_and_decay(self) -> (Self, Self)
+    where
+        Self: Sized;
     fn hypotenuse(self, other: Self) -> Self;
     fn logarithm(self) -> Self;
     fn raised_to(self, exponent: Self) -> Self;
@@ -38,7 +42,11 @@ macro_rules! of_libm {
             })*
 
             fn hyperbolic_tangent(self) -> f64 {
-                hyperbolic_tangent(self)
+                self.hyperbolic_tangent_and_decay().0
+            }
+
+            fn hyperbolic_tangent_and_decay(self) -> (f64, f64) {
+                hyperbolic_tangent_and_decay(self)
             }
         }
     };
@@ -67,13 +75,12 @@ of_libm! {
 }
 
 /// Away from zero by the exponential, which costs less than the function of `libm` that its own is made of.
-fn hyperbolic_tangent(x: f64) -> f64 {
+fn hyperbolic_tangent_and_decay(x: f64) -> (f64, f64) {
     // tanh(0.55) is a half: beyond, the difference from one loses no digit.
     const HALF: f64 = 0.55;
-    if x.abs() < HALF {
-        return libm::tanh(x);
-    }
-    (1.0 - 2.0 / (libm::exp(2.0 * x.abs()) + 1.0)).copysign(x)
+    let decay = libm::exp(-2.0 * x.abs());
+    let tangent = if x.abs() < HALF { libm::tanh(x) } else { (1.0 - 2.0 * decay / (1.0 + decay)).copysign(x) };
+    (tangent, decay)
 }
 
 #[cfg(test)]

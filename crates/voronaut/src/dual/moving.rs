@@ -3,7 +3,7 @@
 
 use super::{Dual, Effort, Kind};
 use crate::error::Result;
-use crate::geodesic::{LocalMetric, chord_near};
+use crate::geodesic::{LocalMetric, chord_between};
 use crate::geometry::{Point, Tensor, Vector};
 use crate::metric::MetricField;
 use crate::parallel::{copy_over, prelude::*};
@@ -105,16 +105,18 @@ pub(crate) struct Saved {
     factor: f64,
 }
 
-/// A point and the logarithm of the tensor there.
+/// A point with the tensor there, and its logarithm.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct Site {
     at: Point,
+    tensor: Tensor,
     log: Tensor,
 }
 
 impl Dual<'_> {
     fn site_at(&self, at: Point, beside: VertexId) -> Site {
-        Site { at, log: self.field().at_near(at, &mut self.local(beside).near.clone()).log() }
+        let tensor = self.field().at_near(at, &mut self.local(beside).near.clone());
+        Site { at, tensor, log: tensor.log() }
     }
 }
 
@@ -241,7 +243,7 @@ impl Moving for Dual<'_> {
     }
 
     fn chord(&self, near: VertexId, [a, b]: [Site; 2]) -> f64 {
-        chord_near(self.field(), a.at, b.at, self.local(near).near)
+        chord_between(self.field(), [a.at, b.at], [a.tensor, b.tensor], self.local(near).near)
     }
 
     fn settle_move(&mut self, v: VertexId) {

@@ -54,7 +54,8 @@ pub(crate) fn bent_chord(
     q: Point,
     at_q: &LocalMetric,
 ) -> Length {
-    let bent = less_bending(chord(field, p, q), [at_p, at_q], [q - p, q - p]);
+    let chord = chord_between(field, [p, q], [at_p.tensor, at_q.tensor], at_p.near);
+    let bent = less_bending(chord, [at_p, at_q], [q - p, q - p]);
     Length { value: bent.value, error: bent.error / 3.0 }
 }
 

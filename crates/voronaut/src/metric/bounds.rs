@@ -53,7 +53,7 @@ impl Bounds {
     /// not hide an invalid metric from `check_tensor`.
     #[must_use]
     pub(crate) fn clamp(&self, tensor: Tensor) -> Tensor {
-        if !tensor.is_positive_definite() {
+        if !tensor.is_positive_definite() || self.are_met(tensor) {
             return tensor;
         }
         let e = tensor.eigen();
@@ -68,12 +68,22 @@ impl Bounds {
         if unchanged { tensor } else { Tensor::from_axis(e.axis, large, small) }
     }
 
+    /// Whether limits on sizes alone are met for sure, without eigenvalues: by how much a tensor exceeds them is positive definite.
+    fn are_met(&self, tensor: Tensor) -> bool {
+        let least = self.h_max.map_or(0.0, |h| SURE / (h * h));
+        let is_above = |Tensor { xx, xy, yy }: Tensor| xx > 0.0 && yy > 0.0 && xx * yy > xy * xy * SURE;
+        self.a_max.is_none() && self.h_min.is_none() && is_above(tensor + Tensor::IDENTITY * -least)
+    }
+
     fn clamp_sizes(&self, eigenvalue: f64) -> f64 {
         let most = self.h_min.map_or(f64::INFINITY, |h| 1.0 / (h * h));
         let least = self.h_max.map_or(0.0, |h| 1.0 / (h * h));
         eigenvalue.min(most).max(least)
     }
 }
+
+/// Limits are met for sure where they are by this factor, which is more than rounding makes up.
+const SURE: f64 = 1.0 + 1e-6;
 
 /// A field within [`Bounds`]; one on a surface in the tangent planes.
 #[derive(Clone, Debug)]

@@ -2,7 +2,7 @@
 
 use super::complexity::{PIECES, start};
 use super::form::Form;
-use super::nodal::{absolute, size};
+use super::nodal::size;
 use super::{MetricField, Near, Norm, Optimal, Recovery, Sampled, ScalarField, Snapshot, recover_hessian};
 use crate::error::{Error, Result};
 use crate::geometry::{Jet, Point, Tensor, Vector, centroid};
@@ -74,11 +74,10 @@ impl Hessian {
 impl MetricField for Hessian {
     fn at(&self, p: Point) -> Tensor {
         if self.degree == 1 {
-            let hessian = self.function.second_derivatives(p);
-            return self.optimal.of(hessian, absolute(hessian, self.floor));
+            return self.optimal.of(self.function.second_derivatives(p), self.floor);
         }
         let bounding = self.form(p).bounding(self.floor);
-        bounding * self.norm.weight(bounding, self.degree)
+        bounding * self.norm.weight(bounding.determinant(), self.degree)
     }
 }
 
@@ -120,7 +119,7 @@ impl Recovered {
         let area = 0.5 * self.mesh.triangles.iter().map(|&triangle| self.mesh.double_area(triangle)).sum::<f64>();
         if size > rounding(&self.values, area) && floor > 0.0 {
             let optimal = Optimal::new(norm);
-            let tensors: Vec<Tensor> = self.hessians.iter().map(|&h| optimal.of(h, absolute(h, floor))).collect();
+            let tensors: Vec<Tensor> = self.hessians.iter().map(|&h| optimal.of(h, floor)).collect();
             return Sampled::new(&self.mesh, &tensors);
         }
         let help = "its interpolation is exact on any mesh: use another metric, such as uniform";

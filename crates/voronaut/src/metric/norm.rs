@@ -2,7 +2,6 @@
 
 use crate::elementary::Elementary;
 use crate::error::{Error, Result};
-use crate::geometry::Tensor;
 use std::fmt;
 use std::str::FromStr;
 
@@ -17,6 +16,9 @@ impl Default for Norm {
 }
 
 impl Norm {
+    /// The greatest error: p is infinite.
+    pub(crate) const GREATEST: Self = Self(f64::INFINITY);
+
     /// The norm of an exponent.
     ///
     /// # Errors
@@ -33,12 +35,11 @@ impl Norm {
         self.0
     }
 
-    /// det(Q)^(-1 / ((k + 1) p + 2)), for polynomials of degree k, whose error over a unit of Q is the same everywhere.
-    pub(crate) fn weight(self, bounding: Tensor, degree: usize) -> f64 {
+    /// det(Q)^(-1 / ((k + 1) p + 2)) by det(Q), for polynomials of degree k, whose error over a unit of Q is the same everywhere.
+    pub(crate) fn weight(self, determinant: f64, degree: usize) -> f64 {
         if self.0.is_infinite() {
             return 1.0;
         }
-        let determinant = bounding.determinant();
         if degree == 1 && self.is_square() {
             // Roots cost less than a power.
             return 1.0 / determinant.sqrt().cube_root();

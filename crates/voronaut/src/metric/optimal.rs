@@ -39,9 +39,13 @@ impl Optimal {
         Self { norm, densities: std::array::from_fn(of) }
     }
 
-    /// M up to a factor that is the same everywhere, of a Hessian and its absolute value.
-    pub(crate) fn of(&self, hessian: Tensor, absolute: Tensor) -> Tensor {
-        absolute * (self.norm.weight(absolute, 1) * self.density(hessian.determinant() / absolute.determinant()))
+    /// M up to a factor that is the same everywhere, of a Hessian whose absolute eigenvalues are raised to a floor, which is positive.
+    pub(crate) fn of(&self, hessian: Tensor, floor: f64) -> Tensor {
+        hessian.map_both_eigenvalues(|both| {
+            let [a, b] = both.map(|value| value.abs().max(floor));
+            let factor = self.norm.weight(a * b, 1) * self.density((both[0] / a) * (both[1] / b));
+            [a * factor, b * factor]
+        })
     }
 
     fn density(&self, t: f64) -> f64 {
@@ -112,7 +116,7 @@ mod tests {
         // sqrt(det) of the weighted tensor is det^(p / (2p + 2)).
         let h = Tensor::new(40.0, 3.0, 2.0);
         for (p, power) in [(1.0, 0.25), (2.0, 1.0 / 3.0), (4.0, 0.4), (f64::INFINITY, 0.5)] {
-            let density = Optimal::new(Norm::new(p).unwrap()).of(h, h).determinant().sqrt();
+            let density = Optimal::new(Norm::new(p).unwrap()).of(h, f64::MIN_POSITIVE).determinant().sqrt();
             assert!((density / h.determinant().powf(power) - 1.0).abs() < 1e-12, "{p}");
         }
     }

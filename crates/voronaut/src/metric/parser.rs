@@ -52,6 +52,7 @@ impl<'a> Parser<'a> {
             let what = format!("more than {MAX_NESTING} levels of parentheses, functions, signs or powers");
             return Err(self.error(&what, "use fewer levels"));
         }
+        let start = self.code.len();
         self.operand()?;
         let mut compared = false;
         while let Some((spelling, binding, op)) = self.operator().filter(|o| o.1 >= least) {
@@ -61,11 +62,38 @@ impl<'a> Parser<'a> {
             compared = binding == COMPARISON;
             self.at += spelling.len();
             // Everything but a power groups from the left: its right operand binds more tightly.
+            let right = self.code.len();
             self.expression(if binding == POWER { POWER } else { binding + 1 })?;
-            self.emit(op)?;
+            self.combine(op, start, right)?;
         }
         self.nesting -= 1;
         Ok(())
+    }
+
+    /// Appends the operation of two operands whose code begins at these places. A left one that is a constant becomes a part of it, as a right one
+    /// does in `fold`: sums and products are the same to the bit when they are turned around.
+    fn combine(&mut self, op: Op, left: usize, right: usize) -> Result<()> {
+        let (&[Op::Constant(c)], false) = (&self.code[left..right], matches!(self.code[right..], [Op::Constant(_)]))
+        else {
+            return self.emit(op);
+        };
+        let with_constant = match op {
+            Op::Add | Op::Subtract => Op::Plus(c),
+            Op::Multiply => Op::Times(c),
+            _ => return self.emit(op),
+        };
+        self.code.remove(left);
+        self.height -= 1;
+        self.barrier -= usize::from(self.barrier > left);
+        for op in &mut self.code[left..] {
+            if let Op::Jump(target) | Op::JumpIfZero(target) = op {
+                *target -= 1;
+            }
+        }
+        if let Op::Subtract = op {
+            self.emit(Op::Negate)?;
+        }
+        self.emit(with_constant)
     }
 
     fn operand(&mut self) -> Result<()> {
@@ -269,10 +297,16 @@ fn fold(op: Op, operands: usize, code: &[Op]) -> Option<(usize, Op)> {
     if operands > 0 && taken.iter().all(|op| matches!(op, Op::Constant(_))) {
         return Some((operands, Op::Constant(folded(taken, op))));
     }
-    match (op, code) {
-        (Op::Power, [.., Op::Constant(2.0)]) => Some((1, Op::Square)),
-        _ => None,
-    }
+    let [.., Op::Constant(c)] = *code else { return None };
+    let with_constant = match op {
+        Op::Add => Op::Plus(c),
+        Op::Subtract => Op::Plus(-c),
+        Op::Multiply => Op::Times(c),
+        Op::Divide => Op::Over(c),
+        Op::Power if c.total_cmp(&2.0).is_eq() => Op::Square,
+        _ => return None,
+    };
+    Some((1, with_constant))
 }
 
 /// A parse error with its column and the text around it, a caret below the place.

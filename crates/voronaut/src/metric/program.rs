@@ -13,6 +13,18 @@ impl Number for f64 {
         self * self
     }
 
+    fn plus(self, c: f64) -> Self {
+        self + c
+    }
+
+    fn times(self, c: f64) -> Self {
+        self * c
+    }
+
+    fn over(self, c: f64) -> Self {
+        self / c
+    }
+
     fn power(self, exponent: Self) -> Self {
         self.raised_to(exponent)
     }
@@ -38,6 +50,18 @@ macro_rules! numbers {
                 self.chain(self.value * self.value, [2.0 * self.value, 2.0])
             }
 
+            fn plus(self, c: f64) -> Self {
+                Self { value: self.value + c, ..self }
+            }
+
+            fn times(self, c: f64) -> Self {
+                Self { value: self.value * c, gradient: self.gradient * c, hessian: self.hessian * c }
+            }
+
+            fn over(self, c: f64) -> Self {
+                Self { value: self.value / c, ..self.times(1.0 / c) }
+            }
+
             fn power(self, exponent: Self) -> Self {
                 let (a, b) = (self.value, exponent.value);
                 let power = a.raised_to(b);
@@ -60,8 +84,8 @@ macro_rules! numbers {
             }
 
             fn call(self, function: &Unary) -> Self {
-                let value = (function.value)(self.value);
-                self.chain(value, (function.derivatives)(self.value, value))
+                let [value, first, second] = (function.jet)(self.value);
+                self.chain(value, [first, second])
             }
         }
     )*};
@@ -85,6 +109,10 @@ pub(super) enum Op {
     Variable(usize),
     Negate,
     Square,
+    /// With a constant: most numbers of a formula are, and need no derivatives.
+    Plus(f64),
+    Times(f64),
+    Over(f64),
     Add,
     Subtract,
     Multiply,
@@ -111,7 +139,7 @@ impl Op {
     pub(super) fn operands(self) -> Option<usize> {
         match self {
             Op::Constant(_) | Op::Variable(_) => Some(0),
-            Op::Negate | Op::Square | Op::Call(_) => Some(1),
+            Op::Negate | Op::Square | Op::Plus(_) | Op::Times(_) | Op::Over(_) | Op::Call(_) => Some(1),
             Op::Jump(_) | Op::JumpIfZero(_) | Op::Keep(_) | Op::Recall(_) | Op::Result(_) => None,
             _ => Some(2),
         }
@@ -133,7 +161,10 @@ impl Op {
             Op::Divide => (10, 0),
             Op::Power => (11, 0),
             Op::Atan2 => (12, 0),
-            Op::Jump(i) | Op::JumpIfZero(i) | Op::Keep(i) | Op::Recall(i) | Op::Result(i) => (13, u64::from(i)),
+            Op::Plus(c) => (13, c.to_bits()),
+            Op::Times(c) => (14, c.to_bits()),
+            Op::Over(c) => (15, c.to_bits()),
+            Op::Jump(i) | Op::JumpIfZero(i) | Op::Keep(i) | Op::Recall(i) | Op::Result(i) => (16, u64::from(i)),
         }
     }
 }
@@ -178,6 +209,9 @@ fn run_on<N: Number, const RESULTS: usize, const SIZE: usize>(code: &[Op], varia
             Op::Variable(i) => push(&mut stack, &mut top, &mut value, variables[i]),
             Op::Negate => value = -value,
             Op::Square => value = value.square(),
+            Op::Plus(c) => value = value.plus(c),
+            Op::Times(c) => value = value.times(c),
+            Op::Over(c) => value = value.over(c),
             Op::Add => value = value + pop(&stack, &mut top),
             Op::Subtract => value = pop(&stack, &mut top) - value,
             Op::Multiply => value = value * pop(&stack, &mut top),

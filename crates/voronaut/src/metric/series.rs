@@ -3,11 +3,11 @@
 use crate::elementary::Elementary;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A function of one number with its first and second derivative by the number and its value there, and the series of the first.
+/// A function of one number; with its first and second derivative; and the series of the first.
 #[derive(Debug)]
 pub(super) struct Unary {
     pub(super) value: fn(f64) -> f64,
-    pub(super) derivatives: fn(f64, f64) -> [f64; 2],
+    pub(super) jet: fn(f64) -> [f64; 3],
     pub(super) slope: fn(Series) -> Series,
 }
 
@@ -23,6 +23,9 @@ pub(super) trait Number:
 {
     fn value(self) -> f64;
     fn square(self) -> Self;
+    fn plus(self, c: f64) -> Self;
+    fn times(self, c: f64) -> Self;
+    fn over(self, c: f64) -> Self;
     fn power(self, exponent: Self) -> Self;
     /// The angle of the vector (`x`, self).
     fn atan2(self, x: Self) -> Self;
@@ -146,6 +149,19 @@ impl Number for Series {
 
     fn square(self) -> Self {
         self * self
+    }
+
+    fn plus(mut self, c: f64) -> Self {
+        self.terms[0] += c;
+        self
+    }
+
+    fn times(self, c: f64) -> Self {
+        Self { terms: self.terms.map(|term| term * c), ..self }
+    }
+
+    fn over(self, c: f64) -> Self {
+        Self { terms: self.terms.map(|term| term / c), ..self }
     }
 
     fn power(self, exponent: Self) -> Self {

@@ -34,43 +34,58 @@ pub(super) const FUNCTIONS: [(&str, Function); 17] = [
     ("if", Function::If),
 ];
 
-const SIN: Unary =
-    Unary { value: Elementary::sine, derivatives: |x, sine| [x.cosine(), -sine], slope: |u| u.call(&COS) };
-const COS: Unary =
-    Unary { value: Elementary::cosine, derivatives: |x, cosine| [-x.sine(), -cosine], slope: |u| -u.call(&SIN) };
-const TAN: Unary = Unary { value: Elementary::tangent, derivatives: of_tan, slope: |u| one() + u.call(&TAN).square() };
+const SIN: Unary = Unary {
+    value: Elementary::sine,
+    jet: |x| {
+        let (sine, cosine) = x.sine_and_cosine();
+        [sine, cosine, -sine]
+    },
+    slope: |u| u.call(&COS),
+};
+const COS: Unary = Unary {
+    value: Elementary::cosine,
+    jet: |x| {
+        let (sine, cosine) = x.sine_and_cosine();
+        [cosine, -sine, -cosine]
+    },
+    slope: |u| -u.call(&SIN),
+};
+const TAN: Unary = Unary { value: Elementary::tangent, jet: of_tan, slope: |u| one() + u.call(&TAN).square() };
 const ASIN: Unary =
-    Unary { value: Elementary::arcsine, derivatives: of_asin, slope: |u| one() / (one() - u.square()).call(&SQRT) };
+    Unary { value: Elementary::arcsine, jet: of_asin, slope: |u| one() / (one() - u.square()).call(&SQRT) };
 const ACOS: Unary = Unary {
     value: Elementary::arccosine,
-    derivatives: |x, value| of_asin(x, value).map(|d| -d),
+    jet: |x| {
+        let [_, first, second] = of_asin(x);
+        [x.arccosine(), -first, -second]
+    },
     slope: |u| -(one() / (one() - u.square()).call(&SQRT)),
 };
-const ATAN: Unary =
-    Unary { value: Elementary::arctangent, derivatives: of_atan, slope: |u| one() / (one() + u.square()) };
+const ATAN: Unary = Unary { value: Elementary::arctangent, jet: of_atan, slope: |u| one() / (one() + u.square()) };
 const SINH: Unary = Unary {
     value: Elementary::hyperbolic_sine,
-    derivatives: |x, sine| [x.hyperbolic_cosine(), sine],
+    jet: |x| [x.hyperbolic_sine(), x.hyperbolic_cosine(), x.hyperbolic_sine()],
     slope: |u| u.call(&COSH),
 };
 const COSH: Unary = Unary {
     value: Elementary::hyperbolic_cosine,
-    derivatives: |x, cosine| [x.hyperbolic_sine(), cosine],
+    jet: |x| [x.hyperbolic_cosine(), x.hyperbolic_sine(), x.hyperbolic_cosine()],
     slope: |u| u.call(&SINH),
 };
 const TANH: Unary =
-    Unary { value: Elementary::hyperbolic_tangent, derivatives: of_tanh, slope: |u| one() - u.call(&TANH).square() };
-const EXP: Unary =
-    Unary { value: Elementary::exponential, derivatives: |_, value| [value, value], slope: |u| u.call(&EXP) };
+    Unary { value: Elementary::hyperbolic_tangent, jet: of_tanh, slope: |u| one() - u.call(&TANH).square() };
+const EXP: Unary = Unary { value: Elementary::exponential, jet: |x| [x.exponential(); 3], slope: |u| u.call(&EXP) };
 const LOG: Unary =
-    Unary { value: Elementary::logarithm, derivatives: |x, _| [1.0 / x, -1.0 / (x * x)], slope: |u| one() / u };
+    Unary { value: Elementary::logarithm, jet: |x| [x.logarithm(), 1.0 / x, -1.0 / (x * x)], slope: |u| one() / u };
 const SQRT: Unary = Unary {
     value: f64::sqrt,
-    derivatives: |x, root| [0.5 / root, -0.25 / (x * root)],
+    jet: |x| {
+        let root = x.sqrt();
+        [root, 0.5 / root, -0.25 / (x * root)]
+    },
     slope: |u| Series::from(0.5) / u.call(&SQRT),
 };
-const ABS: Unary =
-    Unary { value: f64::abs, derivatives: |x, _| [x.signum(), 0.0], slope: |u| u.value().signum().into() };
+const ABS: Unary = Unary { value: f64::abs, jet: |x| [x.abs(), x.signum(), 0.0], slope: |u| u.value().signum().into() };
 
 fn one() -> Series {
     1.0.into()
@@ -104,26 +119,26 @@ pub(super) const POWER: u8 = 7;
 const OR: Op = Op::Test(|a, b| a != 0.0 || b != 0.0);
 const AND: Op = Op::Test(|a, b| a != 0.0 && b != 0.0);
 
-fn of_tan(x: f64, tangent: f64) -> [f64; 2] {
-    let slope = x.cosine().powi(-2);
-    [slope, 2.0 * tangent * slope]
+fn of_tan(x: f64) -> [f64; 3] {
+    let (tangent, slope) = (x.tangent(), x.cosine().powi(-2));
+    [tangent, slope, 2.0 * tangent * slope]
 }
 
-fn of_asin(x: f64, _: f64) -> [f64; 2] {
+fn of_asin(x: f64) -> [f64; 3] {
     let slope = 1.0 / (1.0 - x * x).sqrt();
-    [slope, x * slope.powi(3)]
+    [x.arcsine(), slope, x * slope.powi(3)]
 }
 
-fn of_atan(x: f64, _: f64) -> [f64; 2] {
+fn of_atan(x: f64) -> [f64; 3] {
     let slope = 1.0 / (1.0 + x * x);
-    [slope, -2.0 * x * slope * slope]
+    [x.arctangent(), slope, -2.0 * x * slope * slope]
 }
 
-fn of_tanh(x: f64, tangent: f64) -> [f64; 2] {
+fn of_tanh(x: f64) -> [f64; 3] {
+    let (tangent, decay) = x.hyperbolic_tangent_and_decay();
     // 1 / cosh^2, which keeps its digits where 1 - tanh^2 has lost them.
-    let decay = (-2.0 * x.abs()).exponential();
     let slope = 4.0 * decay / ((1.0 + decay) * (1.0 + decay));
-    [slope, -2.0 * tangent * slope]
+    [tangent, slope, -2.0 * tangent * slope]
 }
 
 #[expect(clippy::float_cmp, reason = "that is what the user asks for")]

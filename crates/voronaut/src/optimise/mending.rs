@@ -191,7 +191,7 @@ impl<S: Copy + PartialEq + Send + Sync> View<S> {
 
     /// Whether a seed that has moved for the sake of lengths is better off: edges may have been flipped.
     fn is_worth<M: Moving<Site = S>>(&self, dual: &M, v: VertexId) -> bool {
-        let fit = |ring: &Ring<S>| ring.fit(dual, v, ring.centre, f64::NEG_INFINITY);
+        let fit = |ring: &Ring<S>| ring.fit(dual, v, ring.centre, None);
         self.is_of(dual, v) || fit(&Ring::of(dual, v)).zip(fit(&self.ring)).is_some_and(|(now, was)| now.is_worth(&was))
     }
 }
@@ -199,8 +199,8 @@ impl<S: Copy + PartialEq + Send + Sync> View<S> {
 /// How fit the triangles around a seed are.
 #[derive(Clone, Copy, Debug)]
 struct Fit {
-    /// The share of its edges that are of unit length.
-    unit: f64,
+    /// The share of its edges that are not of unit length.
+    astray: f64,
     /// In the mean.
     quality: f64,
     least: f64,
@@ -209,7 +209,7 @@ struct Fit {
 impl Fit {
     /// Whether it is worth a move: more unit edges, and triangles that are hardly worse in the mean, none poorer than the poorest was.
     fn is_worth(&self, was: &Self) -> bool {
-        self.unit > was.unit && self.quality >= was.quality - LOSS && self.least >= was.least
+        self.astray < was.astray && self.quality >= was.quality - LOSS && self.least >= was.least
     }
 }
 
@@ -253,28 +253,37 @@ impl<S: Copy + PartialEq + Send + Sync> Ring<S> {
         Limits { misfit: misfits.fold(UNIT, f64::max), quality }
     }
 
-    /// How fit the triangles would be if the seed at the centre were there, unless one is of less quality.
-    fn fit<M: Moving<Site = S>>(&self, dual: &M, v: VertexId, site: S, floor: f64) -> Option<Fit> {
+    /// How fit the triangles would be if the seed at the centre were there, unless that is not worth a move.
+    fn fit<M: Moving<Site = S>>(&self, dual: &M, v: VertexId, site: S, was: Option<&Fit>) -> Option<Fit> {
+        let count = self.links.len() as f64;
+        let floor = was.map_or(f64::NEG_INFINITY, |was| was.least);
         let mut qualities = self.links.iter().map(|&[a, b]| dual.quality([site, a, b]));
         let (least, sum) = qualities.try_fold((f64::INFINITY, 0.0), |(least, sum), quality| {
             (quality >= floor).then_some((quality.min(least), sum + quality))
         })?;
-        let unit = self.links.iter().filter(|&&[u, _]| is_unit(dual.chord(v, [site, u]))).count();
-        let [unit, quality] = [unit as f64, sum].map(|sum| sum / self.links.len() as f64);
-        Some(Fit { unit, quality, least })
+        let mut fit = Fit { astray: 0.0, quality: sum / count, least };
+        let is_worth = |fit: &Fit| was.is_none_or(|was| fit.is_worth(was));
+        let mut astray = 0.0;
+        for &[u, _] in &self.links {
+            if !is_worth(&fit) {
+                return None;
+            }
+            astray += f64::from(u8::from(!is_unit(dual.chord(v, [site, u]))));
+            fit.astray = astray / count;
+        }
+        is_worth(&fit).then_some(fit)
     }
 
     /// Moves of the seed at the centre after which more of its edges are of unit length, the best first.
     fn fitter<M: Moving<Site = S>>(&self, dual: &M, v: VertexId) -> Vec<Vector> {
-        let Some(now) = self.fit(dual, v, self.centre, f64::NEG_INFINITY) else { return Vec::new() };
+        let Some(now) = self.fit(dual, v, self.centre, None).filter(|now| now.astray > 0.0) else { return Vec::new() };
         let ways = ways(dual.local(v).tensor.cholesky());
         let tried: Vec<Vector> = LENGTHS.iter().flat_map(|&length| ways.iter().map(move |&by| by * length)).collect();
-        let fit = |&by: &Vector| self.fit(dual, v, dual.site_after(v, by)?, now.least);
+        let fit = |&by: &Vector| self.fit(dual, v, dual.site_after(v, by)?, Some(&now));
         let fits: Vec<Option<Fit>> = tried.par_iter().with_min_len(WAYS / 2).map(fit).collect();
-        let better =
-            tried.into_iter().zip(fits).filter_map(|(by, fit)| Some((by, fit.filter(|fit| fit.is_worth(&now))?)));
-        let mut better: Vec<(Vector, Fit)> = better.collect();
-        better.sort_by(|(_, a), (_, b)| b.unit.total_cmp(&a.unit).then(b.quality.total_cmp(&a.quality)));
+        let mut better: Vec<(Vector, Fit)> =
+            tried.into_iter().zip(fits).filter_map(|(by, fit)| Some((by, fit?))).collect();
+        better.sort_by(|(_, a), (_, b)| a.astray.total_cmp(&b.astray).then(b.quality.total_cmp(&a.quality)));
         better.into_iter().map(|(by, _)| by).collect()
     }
 
@@ -393,10 +402,10 @@ mod tests {
         let topology = dual.topology();
         let lengths =
             topology.edges().map(|h| topology.ends(h)).map(|[u, v]| dual.chord(u, [u, v].map(|v| dual.site(v))));
-        let unit = lengths.filter(|&length| is_unit(length)).count() as f64 / topology.edges().count() as f64;
+        let astray = lengths.filter(|&length| !is_unit(length)).count() as f64 / topology.edges().count() as f64;
         let qualities = topology.faces().map(|f| dual.quality(topology.corners(f).map(|v| dual.site(v))));
         let (least, sum) = qualities.fold((f64::INFINITY, 0.0), |(least, sum), q| (q.min(least), sum + q));
-        Fit { unit, quality: sum / topology.face_count() as f64, least }
+        Fit { astray, quality: sum / topology.face_count() as f64, least }
     }
 
     #[test]
@@ -411,7 +420,7 @@ mod tests {
             let moved = Mending::default().lengths(&mut dual);
             let now = fit(&dual);
             assert!(dual.planar().is_embedded());
-            assert!(moved > 0 && now.unit > was.unit + more, "{} {} {moved}", was.unit, now.unit);
+            assert!(moved > 0 && now.astray < was.astray - more, "{} {} {moved}", was.astray, now.astray);
             assert!(now.quality > was.quality - LOSS && now.least >= was.least, "{now:?} {was:?}");
         }
     }

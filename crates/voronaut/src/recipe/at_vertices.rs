@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::geometry::{TangentPlane, Tensor, Tensor3};
 use crate::mesh::{Solution, SolutionValues};
 use crate::metric::Norm;
-use crate::metric::nodal::{Limit, Limits, Outcome, Pipeline, Source, Vertices, complexity, enforce_spd};
+use crate::metric::nodal::{Limit, Limits, Outcome, Pipeline, Source, Vertices, complexity, weighted};
 use crate::surface::metric::{CovariantHessian, Spec, SurfaceMetric, TangentPlanes, filled, hessians_on};
 use crate::surface::{FeatureOptions, Input, Surface};
 
@@ -43,7 +43,7 @@ fn at(source: SurfaceSource, input: &Input, vertices: &TangentPlanes) -> Result<
         SurfaceSource::Function(values) => {
             let recovered = hessians_on(surface, &spread_values(values, input)?)?;
             let known: Vec<Tensor> = recovered.iter().flatten().map(|found| found.1).collect();
-            let mut absolute = enforce_spd(&known)?.into_iter();
+            let mut absolute = weighted(&known, Norm::GREATEST)?.into_iter();
             let mut in_space =
                 |found: &(TangentPlane, Tensor)| absolute.next().map(|m| found.0.extend(m, m.eigen().large));
             let known: Vec<Option<Tensor3>> = recovered.iter().map(|found| in_space(found.as_ref()?)).collect();

@@ -1,10 +1,9 @@
 //! The complexity of a metric at vertices, in closed form, and metrics of a given complexity.
 
-use super::{Vertices, enforce_spd};
+use super::Vertices;
 use crate::elementary::Elementary;
 use crate::error::{Error, Result};
 use crate::geometry::Tensor;
-use crate::metric::{Norm, Optimal};
 
 /// The integral of sqrt(det M) over a mesh, of the metric that is log-Euclidean between the vertices: exact but for
 /// rounding, for there log sqrt(det M) is linear on every triangle. Triangles of either orientation count.
@@ -16,12 +15,6 @@ pub(crate) fn complexity(mesh: &impl Vertices, tensors: &[Tensor]) -> f64 {
 /// The same on one triangle, by twice its area and log sqrt(det M) at its corners.
 pub(in crate::metric) fn of_triangle(double_area: f64, logs: [f64; 3]) -> f64 {
     double_area * divided_difference(logs)
-}
-
-/// The metric that is [`Optimal`] for linear interpolation in an L^p norm, of given Hessians and up to a factor, `enforce_spd` being |H|.
-pub(super) fn weighted(hessians: &[Tensor], norm: Norm) -> Result<Vec<Tensor>> {
-    let optimal = Optimal::new(norm);
-    Ok(enforce_spd(hessians)?.into_iter().zip(hessians).map(|(absolute, &h)| optimal.of(h, absolute)).collect())
 }
 
 /// A metric times the factor that gives it a complexity.
@@ -90,9 +83,11 @@ fn close_difference(values: [f64; 3]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::super::test_meshes::{grid, tensors_at};
+    use super::super::weighted::weighted;
     use super::*;
     use crate::geometry::{Point, Vector};
     use crate::mesh::Mesh;
+    use crate::metric::Norm;
     use crate::metric::{MetricField, Sampled};
     use proptest::prelude::*;
 

@@ -7,7 +7,7 @@
 //! | operation | what it is |
 //! |---|---|
 //! | [`recover_hessian`](super::recover_hessian) | second derivatives of a solution |
-//! | `enforce_spd` | their absolute values, with a floor |
+//! | `weighted` | the metric for interpolation that they make |
 //! | [`intersect`], [`average`] | one metric of several |
 //! | [`implied`] | the metric in which a mesh is as even as can be |
 //! | [`isotropic`] | of sizes |
@@ -21,8 +21,8 @@ mod implied;
 mod pipeline;
 mod restrict;
 mod solve;
-mod spd;
 mod vertices;
+mod weighted;
 #[cfg(test)]
 pub(crate) mod test_meshes;
 
@@ -35,5 +35,5 @@ pub(crate) use implied::implied_by;
 pub use implied::{implied, isotropic};
 pub use pipeline::{COMPLEXITY_PER_VERTEX, Combination, Outcome, Pipeline, Source, Touched};
 pub use restrict::{Limit, Limits};
-pub(crate) use spd::{absolute, enforce_spd, size};
 pub(crate) use vertices::Vertices;
+pub(crate) use weighted::{size, weighted};

@@ -1,9 +1,10 @@
 //! Metrics at vertices from solutions and other metrics, in one documented order.
 
-use super::complexity::{complexity, demand_target, scaled_to, weighted};
+use super::complexity::{complexity, demand_target, scaled_to};
 use super::gradation::Gradation;
 use super::restrict::{Limits, restrict};
 use super::solve::{Root, root};
+use super::weighted::weighted;
 use super::{Vertices, average, intersect};
 use crate::elementary::Elementary;
 use crate::error::{Error, Result};
@@ -96,7 +97,7 @@ impl Pipeline {
     /// The metric that comes out at the vertices of a mesh.
     ///
     /// # Errors
-    /// As of [`Sampled::new`](crate::metric::Sampled::new), `super::enforce_spd`, [`intersect`], [`average`], `super::restrict` and
+    /// As of [`Sampled::new`](crate::metric::Sampled::new), `super::weighted`, [`intersect`], [`average`], `super::restrict` and
     /// [`super::grade`]; [`Error::Parse`] of a target that is no complexity; [`Error::Limit`] of one that limits forbid.
     pub fn run(&self, mesh: &Mesh, sources: &[Source]) -> Result<Outcome> {
         self.run_on(mesh, sources)

@@ -3,7 +3,7 @@
 use super::{Sampled, SurfaceMetric, fit_curvatures};
 use crate::error::{Error, Result};
 use crate::geometry::{Point3, TangentPlane, Tensor, Tensor3, Vector3};
-use crate::metric::nodal::{absolute, size};
+use crate::metric::nodal::size;
 use crate::metric::{Expression, FLOOR, Neighbours, Norm, Optimal, hessian_around, rounding};
 use crate::parallel::prelude::*;
 use crate::surface::{Curvatures, Implicit, Input, Place, Surface};
@@ -70,7 +70,7 @@ impl SurfaceMetric for CovariantHessian {
 
 /// The metric of second derivatives in a tangent plane, with the larger eigenvalue across it.
 fn tangent(plane: &TangentPlane, hessian: Tensor, optimal: &Optimal, floor: f64) -> Tensor3 {
-    let wanted = optimal.of(hessian, absolute(hessian, floor));
+    let wanted = optimal.of(hessian, floor);
     plane.extend(wanted, wanted.eigen().large)
 }
 
@@ -141,7 +141,7 @@ pub(crate) fn recovered_on(input: &Input, values: &[f64], norm: Norm) -> Result<
     let optimal = Optimal::new(norm);
     let metric = |(plane, hessian): &(TangentPlane, Tensor)| tangent(plane, *hessian, &optimal, FLOOR * mean);
     let fits: Vec<Option<Tensor3>> = found.iter().map(|found| found.as_ref().map(metric)).collect();
-    let least = optimal.of(Tensor::default(), Tensor::isotropic(1.0) * (FLOOR * mean));
+    let least = optimal.of(Tensor::default(), FLOOR * mean);
     Sampled::filled(surface, &fits, Tensor3::IDENTITY * least.xx)
 }
 
