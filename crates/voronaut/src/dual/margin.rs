@@ -225,7 +225,11 @@ impl InCircle for ByEffort<'_, '_> {
             }
             bowed = Some(length);
         }
-        let path = dual.paths.length(&dual.field, p, q, PATHS[level - FIRST_PATH]);
+        let fineness = PATHS[level - FIRST_PATH];
+        let path = match bowed {
+            Some(_) => dual.paths.length_without_kinks(&dual.field, p, q, fineness),
+            None => dual.paths.length(&dual.field, p, q, fineness),
+        };
         match (path, bowed) {
             (Some(path), Some(bowed)) if path.error > bowed.error => known(bowed),
             (None, Some(bowed)) => known(bowed),

@@ -23,6 +23,10 @@ const ROUNDING: f64 = 2e-11;
 /// is more than this much smaller may be so by chance.
 const RATIOS: (f64, f64) = (0.02, 0.7);
 
+/// Where curvatures along a chord differ by more than this over its square, in-circle tests by lengths would err by 0.4 or more
+/// (`margin_from_lengths`). With 0.2, 2 and 8 as many tests are left open (a hard shock, swirl, a kinked Hessian), with 8 in longer time.
+const KINKED: f64 = 0.5;
+
 /// How fine a path is, from `Fineness::COARSEST` to [`Fineness::FINEST`]: each has twice the modes of the one before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Fineness(u8);
@@ -77,6 +81,26 @@ impl Paths {
     /// about 150 evaluations in all.
     pub(crate) fn length(&self, field: &dyn MetricField, p: Point, q: Point, fineness: Fineness) -> Option<PathLength> {
         self.solve(field, p, q, fineness).map(|solved| solved.length)
+    }
+
+    /// [`Paths::length`], unless curvatures along the chord differ as by kinks, which is a tenth of the work.
+    pub(crate) fn length_without_kinks(
+        &self,
+        field: &dyn MetricField,
+        p: Point,
+        q: Point,
+        fineness: Fineness,
+    ) -> Option<PathLength> {
+        let at = nearby(field);
+        let frame = Frame::along(&at, p, q)?;
+        let mut path = Path { at: &at, frame, modes: vec![Vector::default(); STAGES[0].0] };
+        let samples = path.sample(&self.rules[0], &path.modes);
+        let length = samples.length(&self.rules[0]);
+        let [least, most] = System::new(&path, &self.rules[0], &samples).curvature;
+        if length * length * (most - least) > KINKED {
+            return None;
+        }
+        self.climb(&mut path, fineness, None).map(|solved| solved.length)
     }
 
     /// The geodesic itself, with [`Paths::length`]'s length. With a path given it is the one that this path contracts to,
