@@ -276,7 +276,7 @@ impl ByEffort<'_, '_> {
         let value = frozen_margin(mean, [a - c, b - c], [b - d, a - d]);
         let spread = |v| {
             let reference = mean.dot(v, v);
-            tensors.iter().map(|t| (t.dot(v, v) / reference - 1.0).abs()).fold(0.0, f64::max)
+            tensors.iter().map(|t| (t.dot(v, v) - reference).abs()).fold(0.0, f64::max) / reference
         };
         let error = spread(b - a).max(spread(d - c));
         Margin { value, error: if self.effort == Effort::Full && error > FROZEN { UNKNOWN } else { error } }

@@ -1,8 +1,8 @@
 //! The metric around a point to second order: tensor, Christoffel symbols, logarithm and exponential map.
 
-use crate::elementary::Elementary;
 use crate::geometry::{Point, Tensor, Vector, from_frame};
 use crate::metric::{MetricField, Near};
+use std::f64::consts::FRAC_1_SQRT_2;
 
 /// Finite differences are taken over this share of the metric unit length: at the scale of a cell, so that noise of
 /// the field does not pass for curvature (DESIGN.md, "Rough metrics").
@@ -14,6 +14,9 @@ pub(crate) const STILL: f64 = 0.05;
 /// Directions and radius (metric units) of the samples over which a rough field is averaged.
 const RING: usize = 8;
 const RING_RADIUS: f64 = 0.5;
+/// Half of the directions; the others are opposite.
+const DIRECTIONS: [[f64; 2]; RING / 2] =
+    [[1.0, 0.0], [FRAC_1_SQRT_2, FRAC_1_SQRT_2], [0.0, 1.0], [-FRAC_1_SQRT_2, FRAC_1_SQRT_2]];
 
 /// The metric tensor at a point and its first derivatives.
 ///
@@ -103,8 +106,7 @@ impl LocalMetric {
         let beside = |p: Point| field.at_near(p, &mut near.clone());
         let [a, b, c] = centre.cholesky();
         let (mut sum, mut number, mut slopes) = (centre, 1.0, [Tensor::default(); 2]);
-        for k in 0..RING / 2 {
-            let (sin, cos) = (std::f64::consts::TAU * k as f64 / RING as f64).sine_and_cosine();
+        for [cos, sin] in DIRECTIONS {
             let offset = from_frame([a, b, c], Vector::new(cos, sin)) * RING_RADIUS;
             let (ahead, behind) = (beside(p + offset), beside(p - offset));
             if ahead.is_positive_definite() && behind.is_positive_definite() {

@@ -99,8 +99,9 @@ impl Shock {
     /// The gradient of E.
     fn gradient(&self, p: Point) -> Vector {
         let (sin, cos) = (5.0 * p.y).sine_and_cosine();
-        // 1 / cosh^2 keeps its digits where 1 - tanh^2 has lost them.
-        let slope = ((2.0 * p.x - sin) / self.lambda).hyperbolic_cosine().powi(-2) / self.lambda;
+        // 1 / cosh^2, which keeps its digits where 1 - tanh^2 has lost them.
+        let decay = (-2.0 * ((2.0 * p.x - sin) / self.lambda).abs()).exponential();
+        let slope = 4.0 * decay / ((1.0 + decay).powi(2) * self.lambda);
         Vector::new(2.0 * slope + 3.0 * p.x * p.x + p.y * p.y, -5.0 * cos * slope + 2.0 * p.x * p.y)
     }
 }

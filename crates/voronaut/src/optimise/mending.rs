@@ -381,11 +381,11 @@ fn misfit<M: Moving>(dual: &M, ends: [M::Site; 2]) -> f64 {
 
 /// Unit vectors all around.
 fn ways(frame: [f64; 3]) -> Vec<Vector> {
-    let way = |k: usize| {
-        let (sine, cosine) = (std::f64::consts::TAU * k as f64 / WAYS as f64).sine_and_cosine();
-        from_frame(frame, Vector::new(cosine, sine))
-    };
-    (0..WAYS).map(way).collect()
+    // In turns of thirty degrees.
+    const LONG: f64 = 0.866_025_403_784_438_6;
+    let half = [[1.0, 0.0], [LONG, 0.5], [0.5, LONG], [0.0, 1.0], [-0.5, LONG], [-LONG, 0.5]];
+    let half: [Vector; WAYS / 2] = half.map(|[x, y]| from_frame(frame, Vector::new(x, y)));
+    half.into_iter().chain(half.map(|way| -way)).collect()
 }
 
 #[cfg(test)]
