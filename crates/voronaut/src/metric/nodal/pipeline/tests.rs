@@ -1,7 +1,8 @@
 //! Targets met, limits kept, sources on one scale.
 
-use super::super::complexity::{scaled_to, weighted};
+use super::super::complexity::scaled_to;
 use super::super::test_meshes::{grid, tensors_at};
+use super::super::weighted::weighted;
 use super::super::{Limit, grade};
 use super::*;
 use crate::geometry::Vector;
