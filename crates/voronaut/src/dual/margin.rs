@@ -209,8 +209,8 @@ impl InCircle for ByEffort<'_, '_> {
         level >= FIRST_PATH
     }
 
-    /// The geodesic between two seeds. Where the field has kinks, a bow that is small says as much as coarse polynomials, and finer ones
-    /// know whether they say more.
+    /// The geodesic between two seeds. Where the field is rough, a bow that is small says as much as coarse polynomials; finer ones say more where
+    /// there is no kink.
     fn solve(&self, i: u32, j: u32, level: usize) -> Option<Known> {
         let dual = self.dual;
         let [p, q] = [i, j].map(|i| dual.position(VertexId(i)));

@@ -41,7 +41,7 @@ pub(crate) struct SurfaceDual<'a> {
 pub(crate) struct State {
     pub(super) topology: Triangulation,
     pub(super) places: Vec<Place>,
-    planes: Vec<TangentPlane>,
+    pub(super) planes: Vec<TangentPlane>,
     /// What the triangles at a seed are to face.
     facing: Vec<Vector3>,
     pub(super) locals: Vec<LocalMetric>,

@@ -167,7 +167,11 @@ impl SurfaceDual<'_> {
     pub(super) fn chord_length(&self, ends: [VertexId; 2]) -> f64 {
         let [p, q] = ends.map(|w| &self.state.places[w.index()]);
         let tensors = ends.map(|w| self.state.measured[w.index()].tensor);
-        let middle = self.input.lift(p, p.position.lerp(q.position, 0.5));
+        let [m, n] = ends.map(|w| self.state.planes[w.index()].normal);
+        let (half, up) = (p.position.lerp(q.position, 0.5), (m + n).unit());
+        // Straight above is found sooner than the closest point.
+        let above = up.and_then(|up| self.input.lift_along(p, half, up, UPRIGHT));
+        let middle = above.or_else(|| self.input.lift(p, half));
         let middle = middle.map_or(tensors, |place| [self.metric.at(&place); 2]);
         self.input.chord([p, q], tensors).simpson(middle) * self.factor.sqrt()
     }
