@@ -42,7 +42,7 @@ macro_rules! of_libm {
             })*
 
             fn hyperbolic_tangent(self) -> f64 {
-                self.hyperbolic_tangent_and_decay().0
+                if self.abs() < HALF { libm::tanh(self) } else { self.hyperbolic_tangent_and_decay().0 }
             }
 
             fn hyperbolic_tangent_and_decay(self) -> (f64, f64) {
@@ -74,10 +74,11 @@ of_libm! {
     tangent: tan() -> f64;
 }
 
+/// tanh(0.55) is a half: beyond, the difference from one loses no digit.
+const HALF: f64 = 0.55;
+
 /// Away from zero by the exponential, which costs less than the function of `libm` that its own is made of.
 fn hyperbolic_tangent_and_decay(x: f64) -> (f64, f64) {
-    // tanh(0.55) is a half: beyond, the difference from one loses no digit.
-    const HALF: f64 = 0.55;
     let decay = libm::exp(-2.0 * x.abs());
     let tangent = if x.abs() < HALF { libm::tanh(x) } else { (1.0 - 2.0 * decay / (1.0 + decay)).copysign(x) };
     (tangent, decay)

@@ -4,7 +4,7 @@ use super::{Dual, Moving};
 use crate::planar::Planar;
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
 
-/// Rings of seeds around the edges' quadrilaterals, whose own seeds then have whole cells: of 338 edges of five meshes (a hard shock, swirl, a Hessian
+/// Rings of seeds around the edges' quadrilaterals, whose own seeds then have whole cells: of 321 edges of five meshes (a hard shock, swirl, a Hessian
 /// among them) the nerve has or lacks all but one as with four rings on a canvas four times as fine; with two rings all but two.
 const RINGS: usize = 1;
 

@@ -84,7 +84,7 @@ impl Paths {
         self.solve(field, p, q, fineness).map(|solved| solved.length)
     }
 
-    /// [`Paths::length`], unless the field has kinks along the chord: to see that takes a tenth of the work.
+    /// [`Paths::length`], unless the field has kinks along the chord, as 36 evaluations of it tell.
     pub(crate) fn length_without_kinks(
         &self,
         field: &dyn MetricField,

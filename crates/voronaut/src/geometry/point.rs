@@ -82,18 +82,22 @@ macro_rules! affine {
 
             /// The point nearest to this one of the segment from a to b, which may be the same.
             pub(crate) fn nearest_between(self, a: Self, b: Self) -> Self {
-                let along = b - a;
-                let t = ((self - a).dot(along) / along.dot(along)).clamp(0.0, 1.0);
+                let t = self.share_between(a, b);
                 a.lerp(b, if t.is_nan() { 0.0 } else { t })
+            }
+
+            /// How much of the way from a to b leads to the point of the segment that is nearest to this one; none where they are the same.
+            pub(crate) fn share_between(self, a: Self, b: Self) -> f64 {
+                let along = b - a;
+                let square = along.dot(along);
+                if square > 0.0 { ((self - a).dot(along) / square).clamp(0.0, 1.0) } else { 0.0 }
             }
 
             /// The squared distance to the nearest point of a triangle's sides, and its barycentric coordinates.
             pub(crate) fn nearest_on_sides(self, [a, b, c]: [Self; 3]) -> (f64, [f64; 3]) {
                 let on_side = |(i, (start, end)): (usize, (Self, Self))| {
-                    let (along, offset) = (end - start, self - start);
-                    let square = along.dot(along);
-                    let t = if square > 0.0 { (offset.dot(along) / square).clamp(0.0, 1.0) } else { 0.0 };
-                    let rest = offset - along * t;
+                    let t = self.share_between(start, end);
+                    let rest = (self - start) - (end - start) * t;
                     let mut weights = [0.0; 3];
                     (weights[i], weights[(i + 1) % 3]) = (1.0 - t, t);
                     (rest.dot(rest), weights)

@@ -56,7 +56,7 @@ const ASIN: Unary =
 const ACOS: Unary = Unary {
     value: Elementary::arccosine,
     jet: |x| {
-        let [_, first, second] = of_asin(x);
+        let [first, second] = slopes_of_asin(x);
         [x.arccosine(), -first, -second]
     },
     slope: |u| -(one() / (one() - u.square()).call(&SQRT)),
@@ -64,12 +64,18 @@ const ACOS: Unary = Unary {
 const ATAN: Unary = Unary { value: Elementary::arctangent, jet: of_atan, slope: |u| one() / (one() + u.square()) };
 const SINH: Unary = Unary {
     value: Elementary::hyperbolic_sine,
-    jet: |x| [x.hyperbolic_sine(), x.hyperbolic_cosine(), x.hyperbolic_sine()],
+    jet: |x| {
+        let sine = x.hyperbolic_sine();
+        [sine, x.hyperbolic_cosine(), sine]
+    },
     slope: |u| u.call(&COSH),
 };
 const COSH: Unary = Unary {
     value: Elementary::hyperbolic_cosine,
-    jet: |x| [x.hyperbolic_cosine(), x.hyperbolic_sine(), x.hyperbolic_cosine()],
+    jet: |x| {
+        let cosine = x.hyperbolic_cosine();
+        [cosine, x.hyperbolic_sine(), cosine]
+    },
     slope: |u| u.call(&SINH),
 };
 const TANH: Unary =
@@ -125,8 +131,13 @@ fn of_tan(x: f64) -> [f64; 3] {
 }
 
 fn of_asin(x: f64) -> [f64; 3] {
+    let [first, second] = slopes_of_asin(x);
+    [x.arcsine(), first, second]
+}
+
+fn slopes_of_asin(x: f64) -> [f64; 2] {
     let slope = 1.0 / (1.0 - x * x).sqrt();
-    [x.arcsine(), slope, x * slope.powi(3)]
+    [slope, x * slope.powi(3)]
 }
 
 fn of_atan(x: f64) -> [f64; 3] {

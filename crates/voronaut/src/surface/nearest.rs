@@ -108,18 +108,20 @@ pub(crate) fn closest_weights([a, b, c]: [Point3; 3], p: Point3) -> [f64; 3] {
     }
     // Only a side that the point is beyond can be closest.
     match parts.map(|part| part < 0.0) {
-        [true, false, false] => on_side(p, b, c).map_or([0.0, 1.0, 0.0], |t| [0.0, 1.0 - t, t]),
-        [false, true, false] => on_side(p, c, a).map_or([0.0, 0.0, 1.0], |t| [t, 0.0, 1.0 - t]),
-        [false, false, true] => on_side(p, a, b).map_or([1.0, 0.0, 0.0], |t| [1.0 - t, t, 0.0]),
+        [true, false, false] => {
+            let t = p.share_between(b, c);
+            [0.0, 1.0 - t, t]
+        }
+        [false, true, false] => {
+            let t = p.share_between(c, a);
+            [t, 0.0, 1.0 - t]
+        }
+        [false, false, true] => {
+            let t = p.share_between(a, b);
+            [1.0 - t, t, 0.0]
+        }
         _ => p.nearest_on_sides([a, b, c]).1,
     }
-}
-
-/// How far along a side the point is that is closest to another one; nothing of sides without length.
-fn on_side(p: Point3, start: Point3, end: Point3) -> Option<f64> {
-    let along = end - start;
-    let square = along.dot(along);
-    (square > 0.0).then(|| ((p - start).dot(along) / square).clamp(0.0, 1.0))
 }
 
 #[cfg(test)]
