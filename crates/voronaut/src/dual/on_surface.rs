@@ -8,7 +8,7 @@ use super::{Kind, Moving, unit_share};
 use crate::elementary::Elementary;
 use crate::error::{Error, Result};
 use crate::geodesic::{LocalMetric, STILL};
-use crate::geometry::{Point, Point3, Seen, TangentPlane, Tensor3, Vector, Vector3};
+use crate::geometry::{Point, Point3, Seen, TangentPlane, Tensor, Tensor3, Vector, Vector3};
 use crate::metric::Scaled;
 use crate::parallel::{copy_over, prelude::*};
 use crate::progress::Sketch;
@@ -128,7 +128,7 @@ impl<'a> SurfaceDual<'a> {
         let ratio = factor / self.factor;
         self.factor = factor;
         if !(1.0 / ALIKE..=ALIKE).contains(&ratio) {
-            self.state.topology.forget_lengths(|_| true);
+            self.state.topology.change_lengths(|_, _| f64::NAN);
             return self.measure_all();
         }
         self.state.locals.par_iter_mut().with_min_len(1024).for_each(|local| *local = local.times(ratio));
@@ -137,7 +137,7 @@ impl<'a> SurfaceDual<'a> {
     }
 
     fn measure_all(&mut self) -> Result<()> {
-        self.measure_each(|_, _| true, |_, field| LocalMetric::at(field, Point::default()))
+        self.measure_each(|_, _| true, |_, field, tensor| LocalMetric::at_known(field, Point::default(), tensor))
     }
 
     pub(super) fn position(&self, v: VertexId) -> Point3 {
@@ -148,16 +148,16 @@ impl<'a> SurfaceDual<'a> {
     fn measure_each(
         &mut self,
         is_due: impl Fn(&LocalMetric, Vector) -> bool + Sync,
-        measure: impl Fn(&LocalMetric, &Scaled) -> LocalMetric + Sync,
+        measure: impl Fn(&LocalMetric, &Scaled, Tensor) -> LocalMetric + Sync,
     ) -> Result<()> {
         let (input, metric, factor) = (self.input, self.metric, self.factor);
         let State { places, planes, locals, measured, .. } = &mut self.state;
         let seeds = locals.par_iter_mut().zip(measured).zip(places.as_slice()).zip(planes.as_slice());
         seeds.with_min_len(64).for_each(|(((local, measured), at), plane)| {
             if is_due(local, plane.flatten(at.position - measured.at)) {
-                let chart = Chart::in_plane(input, metric, *at, *plane);
-                *local = measure(local, &Scaled { field: &chart, factor });
-                *measured = Measured { at: at.position, tensor: metric.at(at) };
+                let (chart, tensor) = (Chart::in_plane(input, metric, *at, *plane), metric.at(at));
+                *local = measure(local, &Scaled { field: &chart, factor }, chart.seen(at, tensor) * factor);
+                *measured = Measured { at: at.position, tensor };
             }
         });
         match self.state.locals.iter().position(|local| !local.tensor.is_positive_definite()) {
@@ -288,6 +288,28 @@ impl<'a> SurfaceDual<'a> {
         after < UPRIGHT && after < self.upright(corners)
     }
 
+    /// Lengths after seeds have moved: they change as straight edges do, where the metric at both ends holds still, and are to be measured elsewhere.
+    fn carry_lengths(&mut self, landings: &[Option<Landing>], moving: &[bool]) {
+        let State { topology, places, planes, locals, measured, .. } = &mut self.state;
+        let landing = |v: VertexId| landings[v.index()].filter(|_| moving[v.index()]).map(|to| to.place.position);
+        let is_due = |v: VertexId| {
+            let by = |to: Point3| planes[v.index()].flatten(to - measured[v.index()].at);
+            landing(v).is_some_and(|to| locals[v.index()].tensor.length(by(to)) >= STILL)
+        };
+        topology.change_lengths(|ends, length| {
+            if length.is_nan() || !ends.iter().any(|v| moving[v.index()]) {
+                return length;
+            }
+            if ends.into_iter().any(is_due) {
+                return f64::NAN;
+            }
+            let [m, n] = ends.map(|v| measured[v.index()].tensor);
+            let [p, q] = ends.map(|v| places[v.index()].position);
+            let [to_p, to_q] = ends.map(|v| landing(v).unwrap_or(places[v.index()].position));
+            length * ((m + n).length(to_q - to_p) / (m + n).length(q - p))
+        });
+    }
+
     /// A place with the metric there, scaled.
     fn site_of(&self, place: Place) -> SurfaceSite {
         let normal = self.input().normal(&place);
@@ -381,14 +403,14 @@ impl Moving for SurfaceDual<'_> {
         moves.iter().zip(found.collect::<Vec<_>>()).for_each(|(&(v, _), found)| landings[v.index()] = found);
         let moving = landings.iter().map(Option::is_some).collect();
         let moving = self.topology().movable_together(moving, |f, moving| self.would_turn(f, &landings, moving));
-        let State { topology, places, planes, facing, .. } = &mut self.state;
+        self.carry_lengths(&landings, &moving);
+        let State { places, planes, facing, .. } = &mut self.state;
         let seeds = places.par_iter_mut().zip(planes).zip(facing).zip(&landings).zip(&moving).with_min_len(256);
         seeds.for_each(|((((place, plane), facing), landing), &moves)| {
             if let Some(landing) = landing.filter(|_| moves) {
                 (*place, *plane, *facing) = (landing.place, plane.turned(landing.normal), landing.normal);
             }
         });
-        topology.forget_lengths(|ends| ends.iter().any(|v| moving[v.index()]));
         moves.iter().map(|(v, _)| moving[v.index()]).collect()
     }
 
@@ -405,7 +427,7 @@ impl Moving for SurfaceDual<'_> {
 
     fn settle_moves(&mut self) -> Result<u64> {
         let is_due = |local: &LocalMetric, by: Vector| local.tensor.length(by) >= STILL;
-        self.measure_each(is_due, |local, field| local.moved(field, Point::default()))?;
+        self.measure_each(is_due, |local, field, tensor| local.moved_to(field, Point::default(), tensor))?;
         Ok(self.flip_all())
     }
 
@@ -455,13 +477,15 @@ impl Moving for SurfaceDual<'_> {
 
     fn settle_move(&mut self, v: VertexId) {
         let (at, plane) = (self.state.places[v.index()], self.state.planes[v.index()]);
-        let chart = Chart::in_plane(self.input, self.metric, at, plane);
-        let local =
-            self.state.locals[v.index()].moved(&Scaled { field: &chart, factor: self.factor }, Point::default());
+        let (chart, tensor) = (Chart::in_plane(self.input, self.metric, at, plane), self.metric.at(&at));
+        let (field, there) = (Scaled { field: &chart, factor: self.factor }, chart.seen(&at, tensor) * self.factor);
+        let local = self.state.locals[v.index()].moved_to(&field, Point::default(), there);
         if local.tensor.is_positive_definite() {
             self.state.locals[v.index()] = local;
-            self.state.measured[v.index()] = Measured { at: at.position, tensor: self.metric.at(&at) };
+            self.state.measured[v.index()] = Measured { at: at.position, tensor };
         }
+        let star: Vec<HalfEdge> = self.topology().star(v).flat_map(|h| [h, h.prev()]).collect();
+        star.into_iter().for_each(|h| self.measure_edge(h));
         self.flip_around(v);
     }
 }

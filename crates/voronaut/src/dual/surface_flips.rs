@@ -180,10 +180,10 @@ impl SurfaceDual<'_> {
         ends.iter().any(|v| self.state.locals[v.index()].is_rough)
     }
 
-    /// Keeps the length of an edge that takes long to measure.
+    /// Keeps the length of an edge that takes long to measure, where it is not known.
     pub(super) fn measure_edge(&mut self, h: HalfEdge) {
         let ends = self.topology().ends(h);
-        if self.is_rough(ends) {
+        if self.topology().length(h).is_nan() && self.is_rough(ends) {
             let length = self.chord_length(ends);
             self.state.topology.set_length(h, length);
         }

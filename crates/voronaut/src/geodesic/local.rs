@@ -48,6 +48,15 @@ impl LocalMetric {
     /// The same, where the field may be looked for at a place nearby.
     pub(crate) fn at_near(field: &dyn MetricField, p: Point, mut near: Near) -> Self {
         let tensor = field.at_near(p, &mut near);
+        Self::around(field, p, tensor, near)
+    }
+
+    /// The same, where the tensor at the point is known.
+    pub(crate) fn at_known(field: &dyn MetricField, p: Point, tensor: Tensor) -> Self {
+        Self::around(field, p, tensor, Near::default())
+    }
+
+    fn around(field: &dyn MetricField, p: Point, tensor: Tensor, near: Near) -> Self {
         let (found, second) = Self::expanded(field, p, tensor, near);
         if second > ROUGH { Self::averaged(field, p, tensor, near) } else { found }
     }
@@ -58,6 +67,13 @@ impl LocalMetric {
     pub(crate) fn moved(&self, field: &dyn MetricField, p: Point) -> Self {
         let mut near = self.near;
         let tensor = field.at_near(p, &mut near);
+        Self { near, ..*self }.moved_to(field, p, tensor)
+    }
+
+    /// The same, where the tensor at the point is known.
+    #[must_use]
+    pub(crate) fn moved_to(&self, field: &dyn MetricField, p: Point, tensor: Tensor) -> Self {
+        let near = self.near;
         if self.is_rough { Self::averaged(field, p, tensor, near) } else { Self::expanded(field, p, tensor, near).0 }
     }
 

@@ -186,30 +186,22 @@ impl Tensor3 {
     pub(crate) fn exp(self) -> Tensor3 {
         let mean = (self.xx + self.yy + self.zz) / 3.0;
         let deviation = self + Tensor3::IDENTITY * -mean;
-        let size = deviation.to_disk().into_iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
-        if !size.is_finite() || size > LARGEST {
+        let square = deviation.squared();
+        // Without a trace S^3 = q S + d I (Cayley and Hamilton), and no eigenvalue has a square above 4 q / 3.
+        let q = 0.5 * (square.xx + square.yy + square.zz);
+        let halvings = halvings(q * (4.0 / 3.0) / (SMALL * SMALL));
+        if halvings > MOST_HALVINGS {
             return self.map_eigenvalues(Elementary::exponential);
         }
-        let (mut share, mut halvings) = (1.0, 0);
-        // Row sums are at most three entries.
-        while 3.0 * size * share > SMALL {
-            (share, halvings) = (0.5 * share, halvings + 1);
-        }
-        let small = deviation * share;
-        let square = small.squared();
-        // Without a trace S^3 = q S + d I (Cayley and Hamilton).
-        let (q, d) = (0.5 * (square.xx + square.yy + square.zz), small.determinant());
-        let term = |[a, b, c]: [f64; 3], k: u32| {
-            let share = 1.0 / f64::from(k);
-            [1.0 + c * d * share, (a + c * q) * share, b * share]
-        };
-        let series = (1..=TERMS).rev().fold([1.0, 0.0, 0.0], term);
+        let share = 1.0 / f64::from(1_u32 << halvings);
+        let (q, d) = (q * share * share, deviation.determinant() * share * share * share);
+        let series = [1.0 + d * power_sum(&POWERS[3], q, d), power_sum(&POWERS[1], q, d), power_sum(&POWERS[2], q, d)];
         let twice = |[a, b, c]: [f64; 3]| {
             let (cubes, fourths) = (2.0 * b * c, c * c);
             [a * a + cubes * d, 2.0 * a * b + cubes * q + fourths * d, 2.0 * a * c + b * b + fourths * q]
         };
         let [a, b, c] = (0..halvings).fold(series, |root, _| twice(root));
-        (Tensor3::IDENTITY * a + small * b + square * c) * mean.exponential()
+        (Tensor3::IDENTITY * a + deviation * (b * share) + square * (c * share * share)) * mean.exponential()
     }
 
     /// The product with itself.
@@ -270,11 +262,62 @@ impl TangentPlane {
     }
 }
 
-/// Exponents (but for their mean) above this are left to eigenvalues.
-const LARGEST: f64 = 300.0;
-/// Taylor's series is taken of tensors no larger than this, and so far.
+/// Taylor's series, to the power 12, is taken of tensors with eigenvalues no larger than this: what is left out is 2e-16.
 const SMALL: f64 = 0.35;
-const TERMS: u32 = 12;
+/// Exponents (but for their mean) that take more halvings than this, those above 350, are left to eigenvalues.
+const MOST_HALVINGS: u32 = 10;
+
+/// Of S with S^3 = q S + d I, powers of q in rows by powers of d: exp(S) = (1 + d E_3) I + E_1 S + E_2 S^2, where E_s is the sum of
+/// (i + j over i) q^i d^j / (2 i + 3 j + s)!, as by induction the coefficient of S^2 in S^k is that of (i + j over i) q^i d^j over all 2 i + 3 j = k - 2.
+const POWERS: [[[f64; 6]; 4]; 4] = {
+    let mut powers = [[[0.0; 6]; 4]; 4];
+    let mut s = 1;
+    while s < 4 {
+        let mut j = 0;
+        while j < 4 {
+            let mut i = 0;
+            while i < 6 && 2 * i + 3 * j <= 10 {
+                let mut term = 1.0;
+                let mut k = 1;
+                while k <= 2 * i + 3 * j + s {
+                    term /= k as f64;
+                    k += 1;
+                }
+                let mut k = 1;
+                while k <= i {
+                    term = term * (j + k) as f64 / k as f64;
+                    k += 1;
+                }
+                powers[s][j][i] = term;
+                i += 1;
+            }
+            j += 1;
+        }
+        s += 1;
+    }
+    powers
+};
+
+/// A row of [`POWERS`] summed.
+fn power_sum(rows: &[[f64; 6]; 4], q: f64, d: f64) -> f64 {
+    let row = |j: usize| {
+        let [a, b, c, e, f, g] = rows[j];
+        match j {
+            0 => ((((g * q + f) * q + e) * q + c) * q + b) * q + a,
+            1 => ((e * q + c) * q + b) * q + a,
+            2 => (c * q + b) * q + a,
+            _ => a,
+        }
+    };
+    ((row(3) * d + row(2)) * d + row(1)) * d + row(0)
+}
+
+/// How often the root of a square is halved until it is at most one, or once more; very often if it is not finite.
+fn halvings(square: f64) -> u32 {
+    // A square below 2^e has a root below 2^(e / 2).
+    let exponent = (square.to_bits() >> 52) as u32;
+    (exponent.saturating_sub(1022)).div_ceil(2)
+}
 
 /// Sweeps of Jacobi's method; it converges quadratically, five or six are the rule.
 const SWEEPS: usize = 30;

@@ -139,7 +139,7 @@ impl<'a> SeedsOnSurface<'a> {
         let place = self.input.lift(&first, first.position + middle)?;
         let normal = self.input.normal(&place);
         let is_seen = |&i: &u32| self.normals[i as usize].dot(normal) >= SEEN;
-        seeds.iter().all(is_seen).then(|| Chart::new(self.input, self.metric, place, normal).straight())
+        seeds.iter().all(is_seen).then(|| Chart::new(self.input, self.metric, place, normal))
     }
 
     /// The chart that looks along the normal of the straight triangle between three seeds, if it looks at the upper side there.

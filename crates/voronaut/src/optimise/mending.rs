@@ -80,9 +80,10 @@ impl<M: Moving> Mending<M> {
         self.measure(dual);
         let topology = dual.topology();
         let edges = topology.edges_with(|_| true);
+        let ready: Vec<M::Site> = self.sites.par_iter().with_min_len(64).map(|&site| dual.ready(site)).collect();
         let is_off = |&&h: &&HalfEdge| {
             let [u, v] = topology.ends(h);
-            !is_unit(dual.chord(u, [u, v].map(|v| self.sites[v.index()])))
+            !is_unit(dual.chord(u, [u, v].map(|v| ready[v.index()])))
         };
         let off: Vec<HalfEdge> = edges.par_iter().with_min_len(256).filter(is_off).copied().collect();
         let ends = off.into_iter().flat_map(|h| topology.ends(h)).collect();
@@ -263,11 +264,12 @@ impl<S: Copy + PartialEq + Send + Sync> Ring<S> {
         })?;
         let mut fit = Fit { astray: 0.0, quality: sum / count, least };
         let is_worth = |fit: &Fit| was.is_none_or(|was| fit.is_worth(was));
-        let mut astray = 0.0;
+        let (mut astray, mut ready) = (0.0, None);
         for &[u, _] in &self.links {
             if !is_worth(&fit) {
                 return None;
             }
+            let site = *ready.get_or_insert_with(|| dual.ready(site));
             astray += f64::from(u8::from(!is_unit(dual.chord(v, [site, u]))));
             fit.astray = astray / count;
         }

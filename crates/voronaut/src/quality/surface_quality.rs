@@ -87,7 +87,7 @@ impl<'a> Field<'a> {
             input.lift(&place, p)
         };
         let Some(middle) = closest(a.lerp(b, 0.5)) else { return Ok(chord) };
-        let chart = Chart::new(input, self.metric, middle, input.normal(&middle)).straight();
+        let chart = Chart::new(input, self.metric, middle, input.normal(&middle));
         let ends = [a, b].map(|p| chart.flatten(p));
         // Seen from the side that its triangle turns to, which is the chart's or the other.
         let [p, q, r] = mesh.positions_of(mesh.triangles[side.half_edge as usize / 3]);

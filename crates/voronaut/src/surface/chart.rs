@@ -11,13 +11,12 @@ use crate::triangulation::FaceId;
 /// chart (RR-9103, section 12).
 ///
 /// It is good as far as the surface does not turn away: where its normal has a lesser cosine with the chart's than [`STEEPEST`], it
-/// counts as so steep, so that the field is a metric everywhere (at the tip of a spike, in a fold). A coordinate is lifted to the closest place, not straight up, unless [`Chart::straight`] is asked for: they differ by third order in its size.
+/// counts as so steep, so that the field is a metric everywhere (at the tip of a spike, in a fold).
 pub(crate) struct Chart<'a> {
     input: &'a Input,
     metric: &'a dyn SurfaceMetric,
     at: Place,
     plane: TangentPlane,
-    is_straight: bool,
 }
 
 /// Where [`Input::lift_along`] finds nothing: steps in which the place straight above a coordinate is found, at most, and how far aside
@@ -36,12 +35,7 @@ impl<'a> Chart<'a> {
 
     /// The chart at a place in the coordinates of a plane.
     pub(crate) fn in_plane(input: &'a Input, metric: &'a dyn SurfaceMetric, at: Place, plane: TangentPlane) -> Self {
-        Self { input, metric, at, plane, is_straight: false }
-    }
-
-    /// The same chart, in which coordinates are lifted straight up: it takes a few times as long.
-    pub(crate) fn straight(self) -> Self {
-        Self { is_straight: true, ..self }
+        Self { input, metric, at, plane }
     }
 
     /// The unit vector that it looks along.
@@ -63,13 +57,13 @@ impl<'a> Chart<'a> {
     fn place_near(&self, u: Point, face: FaceId) -> Option<Place> {
         let wanted = u - Point::default();
         let above = |from: Vector| self.at.position + self.plane.lift(from);
-        let straight = || self.input.lift_along(&Place { face, ..self.at }, above(wanted), self.plane.normal, STEEPEST);
-        if let Some(place) = self.is_straight.then(straight).flatten() {
-            return Some(place);
+        let straight = self.input.lift_along(&Place { face, ..self.at }, above(wanted), self.plane.normal, STEEPEST);
+        if straight.is_some() {
+            return straight;
         }
         let closest = |from: Vector| self.input.lift(&self.at, above(from));
         let (mut from, mut place) = (wanted, closest(wanted)?);
-        for _ in 0..if self.is_straight { STEPS } else { 0 } {
+        for _ in 0..STEPS {
             let off = wanted - self.plane.flatten(place.position - self.at.position);
             if off.norm() <= STRAIGHT * wanted.norm() {
                 break;
@@ -94,8 +88,12 @@ impl<'a> Chart<'a> {
 
     /// The tensor of a place in the coordinates of the chart.
     pub(crate) fn tensor(&self, place: &Place) -> Tensor {
+        self.seen(place, self.metric.at(place))
+    }
+
+    /// A tensor of a place in the coordinates of the chart.
+    pub(crate) fn seen(&self, place: &Place, m: Tensor3) -> Tensor {
         let [u, v] = self.tangents(place);
-        let m = self.metric.at(place);
         Tensor::new(m.dot(u, u), m.dot(u, v), m.dot(v, v))
     }
 }

@@ -257,13 +257,13 @@ impl Triangulation {
         self.length.par_iter_mut().with_min_len(3 * FACES).for_each(|length| *length *= factor);
     }
 
-    /// Lengths between vertices of which something holds are not known any more.
-    pub(crate) fn forget_lengths(&mut self, is_changed: impl Fn([VertexId; 2]) -> bool + Sync) {
+    /// Lengths become what a function of both ends, in either order, and of the length of before says; NaN is one that is not known.
+    pub(crate) fn change_lengths(&mut self, change: impl Fn([VertexId; 2], f64) -> f64 + Sync) {
         let faces = self.length.par_chunks_mut(3).zip(self.origin.par_chunks(3));
         faces.with_min_len(FACES).for_each(|(lengths, corners)| {
             for k in 0..3 {
-                if corners[k] != VertexId(NONE) && is_changed([corners[k], corners[(k + 1) % 3]]) {
-                    lengths[k] = f64::NAN;
+                if corners[k] != VertexId(NONE) {
+                    lengths[k] = change([corners[k], corners[(k + 1) % 3]], lengths[k]);
                 }
             }
         });
