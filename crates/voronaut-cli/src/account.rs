@@ -24,29 +24,38 @@ pub(crate) fn ours(error: Error) -> Error {
     }
 }
 
-/// The report of a planar mesh, in a metric; and its edges that are not of unit length.
-pub(crate) fn in_plane(meshed: &Meshed, metric: &dyn MetricField, options: Value) -> Result<(Report, Unmet)> {
-    let mesh = &meshed.mesh;
-    let (mut report, unmet) = (report(meshed, options), unmet(mesh, metric, |_| ())?);
-    add_in_plane(&mut report, mesh, metric, &unmet)?;
-    report.closed_form = closed_form(meshed, &unmet);
+/// The report of a planar mesh, in a metric; and its edges that are not of unit length. Neither is measured where nobody is told.
+pub(crate) fn in_plane(
+    meshed: &Meshed,
+    metric: &dyn MetricField,
+    options: Value,
+    is_told: bool,
+) -> Result<(Report, Unmet)> {
+    let (mut report, mut unmet) = (report(meshed, options), Unmet::default());
+    if is_told {
+        unmet = measure_in_plane(&mut report, &meshed.mesh, metric)?;
+        report.closed_form = closed_form(meshed, &unmet);
+    }
     Ok((report, unmet))
 }
 
 /// The report of the mesh of a surface, in a metric that is still to be scaled; and its edges that are
-/// not of unit length.
+/// not of unit length. Neither is measured where nobody is told.
 pub(crate) fn on_surface(
     meshed: &Meshed,
     input: &Input,
     mended: &Mended,
     metric: &dyn SurfaceMetric,
     options: Value,
+    is_told: bool,
 ) -> Result<(Report, Unmet)> {
     let meets = meshed.validity.meetings.note();
     let scaled = Scaled { field: metric, factor: meshed.metric_scale };
-    let mut report = report(meshed, options);
-    let unmet = measure_on_surface(&mut report, &meshed.mesh, &input.surface, &scaled)?;
-    report.closed_form = closed_form(meshed, &unmet);
+    let (mut report, mut unmet) = (report(meshed, options), Unmet::default());
+    if is_told {
+        unmet = measure_on_surface(&mut report, &meshed.mesh, &input.surface, &scaled)?;
+        report.closed_form = closed_form(meshed, &unmet);
+    }
     report.notes.extend(mended.sentences().chain(meets));
     report.fidelity = meshed.fidelity.map(|found| Strayed::Surface(found.into()));
     Ok((report, unmet))
@@ -65,17 +74,12 @@ fn closed_form(meshed: &Meshed, unmet: &Unmet) -> Option<ClosedForm> {
 /// Adds what a planar mesh is in a metric; its edges that are not of unit length.
 pub(crate) fn measure_in_plane(report: &mut Report, mesh: &Mesh, metric: &dyn MetricField) -> Result<Unmet> {
     let unmet = unmet(mesh, metric, |_| ())?;
-    add_in_plane(report, mesh, metric, &unmet)?;
-    Ok(unmet)
-}
-
-fn add_in_plane(report: &mut Report, mesh: &Mesh, metric: &dyn MetricField, unmet: &Unmet) -> Result<()> {
     match &unmet.quality {
         Some(quality) => report.add_quality(quality),
         None => report.add_quality(&metric_quality(mesh, metric)?),
     }
     report.unmet = Some(unmet.figures());
-    Ok(())
+    Ok(unmet)
 }
 
 /// Adds what the mesh of a surface is in a metric; its edges that are not of unit length.

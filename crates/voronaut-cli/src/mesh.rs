@@ -280,7 +280,8 @@ fn in_plane(args: &MeshArgs, world: &World, domain: &Domain, mended: &Mended, st
     let mesh = &meshed.mesh;
     curves::demand_made(mesh, options.order)?;
     let scaled = |p: Point| metric.at(p) * meshed.metric_scale;
-    let (mut report, unmet) = account::in_plane(&meshed, &scaled, used)?;
+    let is_told = world.tells(&args.run) || outputs.picture.is_some();
+    let (mut report, unmet) = account::in_plane(&meshed, &scaled, used, is_told)?;
     if args.in_parts.parts.is_some() {
         // Each part has its own, of which nothing is kept.
         (report.dual, report.relaxation) = (None, None);
@@ -342,7 +343,8 @@ fn on_surface(args: &MeshArgs, world: &World, input: Input, mended: &Mended, sta
         None => recipe::mesh_surface(input, metric.as_ref(), aim, &options, &*world.progress(&args.run))?,
     };
     let made_for = Finer { field: metric.as_ref(), surface: &input.surface, logs: &meshed.finer };
-    let (mut report, unmet) = account::on_surface(&meshed, input, mended, &made_for, used)?;
+    let is_told = world.tells(&args.run) || args.outputs.picture.is_some();
+    let (mut report, unmet) = account::on_surface(&meshed, input, mended, &made_for, used, is_told)?;
     if args.in_parts.parts.is_some() {
         // As in the plane.
         (report.dual, report.relaxation) = (None, None);

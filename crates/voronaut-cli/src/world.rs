@@ -365,6 +365,11 @@ impl<'a> World<'a> {
         if is_stopped { Err(Error::Stopped) } else { Ok(()) }
     }
 
+    /// Whether somebody is told what a run has made, in figures.
+    pub(crate) fn tells(&self, run: &Run) -> bool {
+        !self.is_files() || !run.quiet || run.report.is_some()
+    }
+
     /// Writes the report, if a file is named for it.
     pub(crate) fn write_report(&self, text: String, run: &Run) -> Result<()> {
         run.write_report(&text)?;

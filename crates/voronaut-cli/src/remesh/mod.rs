@@ -78,8 +78,9 @@ fn in_plane(
     let mut meshed = recipe::mesh(&input.domain, &field, &options(args, Effort::Fast), bar)?;
     input.mark(&mut meshed.mesh);
     let used = as_used(args, &sizing, metric_file.as_deref());
+    let is_told = world.tells(&args.run());
     let (measured, (strayed, solution)) = rayon::join(
-        || account::in_plane(&meshed, &field, used),
+        || account::in_plane(&meshed, &field, used, is_told),
         || (fidelity(&meshed.mesh, &input.domain.boundary()), sizes.solution(&field, &meshed.mesh.points)),
     );
     let (mut report, _) = measured?;
@@ -109,7 +110,7 @@ fn on_surface(args: &RemeshArgs, world: &World, input: Input, mended: &Mended, b
     let meshed = recipe::mesh_surface(&input, &field, None, &options, bar)?;
     let used = as_used(args, &sizing, metric_file.as_deref());
     let field = Finer { field: &field, surface: &input.surface, logs: &meshed.finer };
-    let (report, _) = account::on_surface(&meshed, &input, mended, &field, used)?;
+    let (report, _) = account::on_surface(&meshed, &input, mended, &field, used, world.tells(&args.run()))?;
     let solution = sizes.solution(&field, meshed.metric_scale, &input.surface, &meshed.mesh.points)?;
     Ok(Made { mesh: meshed.mesh, report, solution })
 }

@@ -17,8 +17,8 @@ use crate::sampling::{MeasuredCurves, demand_memory};
 use crate::surface::metric::{Closer, Finer, SurfaceMetric, area_of_surface};
 use crate::surface::{Component, Implicit, Input};
 
-/// Vertices of the triangles on which the surface is measured first.
-const MEASURING: usize = 20_000;
+/// Vertices of the triangles on which the surface is measured first: twice as many as are asked for, within this range; the most where no number is.
+const MEASURING: [usize; 2] = [5_000, 20_000];
 /// Rounds of more vertices for the sake of the distance to the surface at most.
 const ROUNDS: usize = 6;
 /// The second round that brings the distance down by less than this factor, beside the best before, is the last: something else than
@@ -376,7 +376,9 @@ impl<'a> Setting<'a> {
     /// A triangulation with V vertices has 2 (V - chi) - B faces, B of its edges on the border; each has the area sqrt(3) / 4.
     pub(super) fn plan(&self, known: Option<f64>) -> Result<SurfacePlan> {
         self.progress.begin("planning", 1)?;
-        let area = area_of_surface(self.input, self.metric, MEASURING)?;
+        let [least, most] = MEASURING;
+        let measuring = self.options.vertices.map_or(most, |count| count.saturating_mul(2).clamp(least, most));
+        let area = area_of_surface(self.input, self.metric, measuring)?;
         // Of the surface as it was before it was cut: vertices on its cuts count once.
         let chi = self.input.seams.whole().euler as f64;
         let extra = self.curves.extra();
