@@ -18,7 +18,8 @@ const WAYS: usize = 12;
 const GAIN: f64 = 1e-3;
 /// Edges whose metric length has a logarithm of at most this size are well within the unit range.
 const UNIT: f64 = 0.3;
-/// Below this quality lengths do not count beside an edge that must stay whole and is too long: every way off it may make others worse.
+/// Below this quality edges around may all be as far from unit length as one is, and lengths do not count beside an edge that must stay whole and is too
+/// long: every way off it may make others worse.
 const POOR: f64 = 2.0 * NEEDLE;
 /// So much the mean quality around a seed may fall where more of its edges are of unit length then. With 0 the share of these rises by three tenths less (a hard
 /// shock of 4,000 vertices, 45 %: 51 % for 54 %), with 0.02 mean quality falls by a hundredth where the metric is not resolved.
@@ -153,8 +154,7 @@ impl<M: Moving> Mending<M> {
                 } else if let Some(&by) = view.better.iter().find(|&&by| dual.shift_by(v, by)) {
                     dual.settle_move(v);
                     self.moved.push(v);
-                    count +=
-                        usize::from(purpose != Purpose::Lengths || view.is_worth(dual, v) || !went_back(dual, v, by));
+                    count += usize::from(view.is_worth(dual, v, purpose) || !went_back(dual, v, by));
                 } else if purpose != Purpose::Lengths {
                     self.in_vain.insert((v, purpose), view.ring);
                 }
@@ -190,10 +190,14 @@ impl<S: Copy + PartialEq + Send + Sync> View<S> {
         links(dual, v).eq(self.links.iter().copied())
     }
 
-    /// Whether a seed that has moved for the sake of lengths is better off: edges may have been flipped.
-    fn is_worth<M: Moving<Site = S>>(&self, dual: &M, v: VertexId) -> bool {
+    /// Whether a seed that has moved is better off: edges may have been flipped.
+    fn is_worth<M: Moving<Site = S>>(&self, dual: &M, v: VertexId, purpose: Purpose) -> bool {
         let fit = |ring: &Ring<S>| ring.fit(dual, v, ring.centre, None);
-        self.is_of(dual, v) || fit(&Ring::of(dual, v)).zip(fit(&self.ring)).is_some_and(|(now, was)| now.is_worth(&was))
+        let is_better = |(now, was): (Fit, Fit)| match purpose {
+            Purpose::Lengths => now.is_worth(&was),
+            _ => now.least > was.least,
+        };
+        self.is_of(dual, v) || fit(&Ring::of(dual, v)).zip(fit(&self.ring)).is_some_and(is_better)
     }
 }
 
@@ -214,10 +218,10 @@ impl Fit {
     }
 }
 
-/// How far edges may leave the unit range for the sake of quality.
+/// How far edges may leave the unit range for the sake of quality, those that get farther out.
 #[derive(Clone, Copy)]
 struct Limits {
-    /// The greatest size of the logarithm of a length.
+    /// The greatest size of the logarithm of a length, around needles or nearly; elsewhere none may.
     misfit: f64,
     /// Where the least quality is below this, lengths do not count.
     quality: f64,
@@ -237,7 +241,7 @@ impl<S: Copy + PartialEq + Send + Sync> Ring<S> {
     }
 
     /// No edge may leave the unit range, or get farther out, unless needles come first, or the quality is poor beside an edge that must stay whole
-    /// and is too long.
+    /// and is too long; where it is poor elsewhere, none may be farther out than one is.
     fn limits<M: Moving<Site = S>>(&self, dual: &M, v: VertexId, purpose: Purpose) -> Limits {
         let topology = dual.topology();
         let is_long = |h: HalfEdge| {
@@ -331,12 +335,20 @@ impl<S: Copy + PartialEq + Send + Sync> Ring<S> {
         let rising: Vec<Vector> = ways.into_par_iter().with_min_len(WAYS / 4).filter(rises).collect();
         let tried: Vec<Vector> =
             LENGTHS.iter().flat_map(|&length| rising.iter().map(move |&by| moved + by * length)).collect();
-        let most = if now < limits.quality { f64::INFINITY } else { limits.misfit };
+        let most = match now {
+            _ if now < limits.quality => f64::INFINITY,
+            _ if now < POOR => limits.misfit,
+            _ => UNIT,
+        };
         let gained = |&by: &Vector| {
             let site = dual.site_after(v, by)?;
             let quality = least(site, now + GAIN)?;
             let site = dual.ready(site);
-            links.iter().all(|&[u, _]| misfit(dual, [site, u]) <= most).then_some(quality)
+            let is_fit = |&[u, _]: &[S; 2]| {
+                let misfit = misfit(dual, [site, u]);
+                misfit <= most || misfit <= self::misfit(dual, [self.centre, u])
+            };
+            links.iter().all(is_fit).then_some(quality)
         };
         let gains: Vec<Option<f64>> = tried.par_iter().with_min_len(WAYS / 2).map(gained).collect();
         let better = ranked(gains.into_iter().enumerate().filter_map(|(i, gain)| Some((-gain?, i))));
