@@ -485,7 +485,9 @@ impl Moving for SurfaceDual<'_> {
             self.state.measured[v.index()] = Measured { at: at.position, tensor };
         }
         let star: Vec<HalfEdge> = self.topology().star(v).flat_map(|h| [h, h.prev()]).collect();
-        star.into_iter().for_each(|h| self.measure_edge(h));
+        for h in star {
+            self.measure_edge(h);
+        }
         self.flip_around(v);
     }
 }

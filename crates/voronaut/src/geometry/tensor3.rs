@@ -267,7 +267,7 @@ const SMALL: f64 = 0.35;
 /// Exponents (but for their mean) that take more halvings than this, those above 350, are left to eigenvalues.
 const MOST_HALVINGS: u32 = 10;
 
-/// Of S with S^3 = q S + d I, powers of q in rows by powers of d: exp(S) = (1 + d E_3) I + E_1 S + E_2 S^2, where E_s is the sum of
+/// Of S with S^3 = q S + d I, powers of q in rows by powers of d: exp(S) = (1 + d E(3)) I + E(1) S + E(2) S^2, where E(s) is the sum of
 /// (i + j over i) q^i d^j / (2 i + 3 j + s)!, as by induction the coefficient of S^2 in S^k is that of (i + j over i) q^i d^j over all 2 i + 3 j = k - 2.
 const POWERS: [[[f64; 6]; 4]; 4] = {
     let mut powers = [[[0.0; 6]; 4]; 4];

@@ -482,16 +482,18 @@ fn no_features() -> Error {
     Error::domain("features cannot be kept without folds", "the surface", help)
 }
 
-/// Mends the worst triangles, before and after that edges that are not of unit length.
+/// Mends the worst triangles, before and after that edges that are not of unit length: around those seeds have come to lie from where the worst can be
+/// made better, and their flips may leave needles.
 fn mend(dual: &mut SurfaceDual) {
     let poor = (dual.topology().face_count() as f64 * MENDED_SHARE).ceil() as usize;
-    let mut mending = Mending::default();
-    mending.lengths(dual);
+    let (poor, mut mending) = (poor.max(LEAST_MENDED), Mending::default());
     for _ in 0..MENDINGS {
         dual.round_off(mending.edges_of_needles(dual));
-        mending.worst(dual, poor.max(LEAST_MENDED));
+        mending.worst(dual, poor);
         mending.needles(dual);
     }
     dual.round_off(mending.edges_of_needles(dual));
     mending.lengths(dual);
+    mending.worst(dual, poor);
+    mending.needles(dual);
 }
