@@ -68,8 +68,8 @@ fn square() -> Input {
 
 #[test]
 fn seeds_of_a_square_in_space_are_protected_as_in_the_plane() {
-    let meshed = meshed(&square(), &options(150));
-    demand_protected(&meshed, 0.2);
+    let meshed = meshed(&square(), &MeshOptions { protection: 0.5, ..options(150) });
+    demand_protected(&meshed, 0.5);
     demand_circles(&meshed, flat_circle, Point3::distance);
 }
 
@@ -84,7 +84,7 @@ fn arc(p: Point3, q: Point3) -> f64 {
 #[test]
 fn seeds_of_a_sphere_are_protected_and_their_net_is_that_of_spherical_geometry() {
     let input = Input::shape("sphere:1", Some(0.1)).unwrap();
-    for protection in [0.35, 0.5] {
+    for protection in [0.45, 0.55] {
         let meshed = meshed(&input, &MeshOptions { protection, ..options(200) });
         demand_protected(&meshed, protection);
         assert_eq!((meshed.mesh.points.len(), net(&meshed).interior().count()), (200, 396));
