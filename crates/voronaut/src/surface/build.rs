@@ -39,6 +39,7 @@ impl Surface {
         let mut surface = Self {
             topology,
             positions,
+            normals: Vec::new(),
             point_labels,
             marks: marks(mesh),
             corners: distinct(mesh.corners.iter().copied().map(VertexId)),
@@ -46,6 +47,7 @@ impl Surface {
             required_triangles: distinct(mesh.required_triangles.iter().copied().map(FaceId)),
             turned: turned.len(),
         };
+        surface.normals = surface.normals_of_faces();
         surface.fix_edges(&mesh.edges)?;
         Ok(surface)
     }

@@ -8,6 +8,7 @@ use super::{Nearest, Place, Surface, project};
 use crate::error::{Error, Result};
 use crate::geometry::{Point3, Vector3};
 use crate::mesh::{Mesh, Solution};
+use crate::parallel::prelude::*;
 use crate::metric::Expression;
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
 use std::sync::OnceLock;
@@ -110,10 +111,8 @@ impl Input {
 
     fn with_seams(surface: Surface, implicit: Option<Expression>, seams: Seams) -> Self {
         let up = Vector3::new(0.0, 0.0, 1.0);
-        let mut normals = vec![up; surface.positions().len()];
-        for v in surface.topology().vertices() {
-            normals[v.index()] = surface.vertex_normal(v).unwrap_or(up);
-        }
+        let slots = (0..surface.positions().len() as u32).into_par_iter().with_min_len(256).map(VertexId);
+        let normals = slots.map(|v| surface.vertex_normal(v).unwrap_or(up)).collect();
         let diagonal = surface.bounds().diagonal();
         let tips = if implicit.is_some() { Box::default() } else { surface.tips(POINTED).into() };
         Self { surface, implicit, seams, normals, tips, diagonal, nearest: OnceLock::new() }
@@ -187,11 +186,11 @@ impl Input {
         let mut face = from;
         for _ in 0..FEW_FACES {
             let [a, b, c] = self.surface.triangle(face);
-            let normal = (b - a).cross(c - a);
-            let area = normal.dot(up);
-            if area.is_nan() || area <= least * normal.norm() {
+            let slope = self.surface.normal(face).dot(up);
+            if slope.is_nan() || slope <= least {
                 return None;
             }
+            let area = (b - a).cross(c - a).dot(up);
             let share = |u: Point3, v: Point3| (u - p).cross(v - p).dot(up) / area;
             let weights = [share(b, c), share(c, a), share(a, b)];
             let [ab, bc, ca] = face.half_edges();

@@ -3,6 +3,7 @@
 use super::{Place, Surface};
 use crate::elementary::Elementary;
 use crate::geometry::{Aabb3, Vector3};
+use crate::parallel::prelude::*;
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
 
 /// A place whose weight (barycentric) at a corner is less is on the side opposite.
@@ -35,8 +36,15 @@ impl Surface {
 
     /// The triangle's unit normal.
     pub fn normal(&self, f: FaceId) -> Vector3 {
-        // The area was found positive; where its square underflows the direction does not matter any more.
-        self.area_vector(f).unit().unwrap_or(Vector3::new(0.0, 0.0, 1.0))
+        self.normals[f.index()]
+    }
+
+    /// The unit normals of all triangles.
+    pub(super) fn normals_of_faces(&self) -> Vec<Vector3> {
+        let faces = (0..self.topology.face_slots() as u32).into_par_iter().with_min_len(1024).map(FaceId);
+        // Areas were found positive; where the square of one underflows the direction does not matter any more.
+        let normal = |f| self.area_vector(f).unit().unwrap_or(Vector3::new(0.0, 0.0, 1.0));
+        faces.map(|f| if self.topology.is_face(f) { normal(f) } else { Vector3::default() }).collect()
     }
 
     /// The mean of the normals of a vertex's triangles, weighted by their angles there (Thurmer and Wuthrich 1998), so
@@ -56,7 +64,8 @@ impl Surface {
             let [least, greatest] = cosines.fold([1.0_f64, -1.0], |[l, g], c| [l.min(c), g.max(c)]);
             (greatest < most && !self.topology.is_border_vertex(v)).then_some((v, least))
         };
-        self.topology.vertices().filter_map(tip).collect()
+        let vertices: Vec<VertexId> = self.topology.vertices().collect();
+        vertices.into_par_iter().with_min_len(256).filter_map(tip).collect()
     }
 
     /// The unit normal at a place: that of its triangle, on an edge the mean of both, at a vertex [`Surface::vertex_normal`].

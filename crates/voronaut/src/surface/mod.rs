@@ -66,6 +66,8 @@ use crate::triangulation::{Constraint, FaceId, Triangulation, VertexId};
 pub struct Surface {
     topology: Triangulation,
     positions: Vec<Point3>,
+    /// Unit normals, one per face slot.
+    normals: Vec<Vector3>,
     point_labels: Vec<i32>,
     marks: Vec<Mark>,
     corners: Vec<VertexId>,
