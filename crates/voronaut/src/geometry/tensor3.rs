@@ -417,6 +417,13 @@ mod tests {
         }
 
         #[test]
+        fn exp_is_that_of_the_eigenvalues(axes in frames(), a in -20.0..20.0, b in -20.0..20.0, c in -20.0..20.0) {
+            let (truth, found) = (Tensor3::from_axes(axes, [a, b, c].map(f64::exp)), Tensor3::from_axes(axes, [a, b, c]).exp());
+            let size = [a, b, c].into_iter().fold(a, f64::max).exp();
+            prop_assert!(largest_difference(found, truth) < 1e-12 * size, "{found:?} {truth:?}");
+        }
+
+        #[test]
         fn exp_undoes_log(axes in frames(), a in -8.0..8.0, b in -8.0..8.0, c in -8.0..8.0) {
             let logarithm = Tensor3::from_axes(axes, [a, b, c]);
             prop_assert!(largest_difference(logarithm.exp().log(), logarithm) < 1e-8, "{:?}", logarithm);

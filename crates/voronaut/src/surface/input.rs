@@ -8,8 +8,8 @@ use super::{Nearest, Place, Surface, project};
 use crate::error::{Error, Result};
 use crate::geometry::{Point3, Vector3};
 use crate::mesh::{Mesh, Solution};
-use crate::parallel::prelude::*;
 use crate::metric::Expression;
+use crate::parallel::prelude::*;
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
 use std::sync::OnceLock;
 
