@@ -39,11 +39,11 @@ impl Surface {
         let mut surface = Self {
             topology,
             positions,
-            normals: Vec::new(),
+            normals: Box::default(),
             point_labels,
-            marks: marks(mesh),
-            corners: distinct(mesh.corners.iter().copied().map(VertexId)),
-            required_points: distinct(mesh.required_points.iter().copied().map(VertexId)),
+            marks: marks(mesh).into(),
+            corners: distinct(mesh.corners.iter().copied().map(VertexId)).into(),
+            required_points: distinct(mesh.required_points.iter().copied().map(VertexId)).into(),
             required_triangles: distinct(mesh.required_triangles.iter().copied().map(FaceId)),
             turned: turned.len(),
         };

@@ -40,7 +40,7 @@ impl Surface {
     }
 
     /// The unit normals of all triangles.
-    pub(super) fn normals_of_faces(&self) -> Vec<Vector3> {
+    pub(super) fn normals_of_faces(&self) -> Box<[Vector3]> {
         let faces = (0..self.topology.face_slots() as u32).into_par_iter().with_min_len(1024).map(FaceId);
         // Areas were found positive; where the square of one underflows the direction does not matter any more.
         let normal = |f| self.area_vector(f).unit().unwrap_or(Vector3::new(0.0, 0.0, 1.0));

@@ -67,11 +67,11 @@ pub struct Surface {
     topology: Triangulation,
     positions: Vec<Point3>,
     /// Unit normals, one per face slot.
-    normals: Vec<Vector3>,
+    normals: Box<[Vector3]>,
     point_labels: Vec<i32>,
-    marks: Vec<Mark>,
-    corners: Vec<VertexId>,
-    required_points: Vec<VertexId>,
+    marks: Box<[Mark]>,
+    corners: Box<[VertexId]>,
+    required_points: Box<[VertexId]>,
     required_triangles: Vec<FaceId>,
     turned: usize,
 }
