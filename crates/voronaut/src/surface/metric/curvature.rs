@@ -80,6 +80,8 @@ const CUBIC: usize = 10;
 const QUADRATIC: usize = 6;
 /// A polynomial of degree three has so many neighbours to fit, at least.
 const ENOUGH: usize = 14;
+/// Two rings rarely have more vertices.
+const FEW: usize = 32;
 
 fn fit(surface: &Surface, v: VertexId) -> Option<Curvatures> {
     let normal = surface.vertex_normal(v)?;
@@ -113,16 +115,20 @@ fn polynomial<const TERMS: usize>(samples: &[(Vector, f64)]) -> [f64; QUADRATIC]
 /// Neighbours and their neighbours, without those on triangles that face away: they are of another sheet.
 fn two_rings(surface: &Surface, v: VertexId, plane: &TangentPlane) -> Vec<Point3> {
     let t = surface.topology();
-    let mut found = vec![v];
+    // Lists that grow in one thread wait for another one's memory.
+    let mut found = Vec::with_capacity(FEW);
+    found.push(v);
     let mut ring = 0..1;
     for _ in 0..2 {
         let next = found.len();
         for i in ring {
             let spokes = t.star(found[i]).filter(|&h| surface.normal(h.face()).dot(plane.normal) > 0.0);
-            // Both ends of the far side: at the border one of them has no spoke of its own.
-            for w in spokes.flat_map(|h| [t.target(h), t.apex(h)]).collect::<Vec<_>>() {
-                if !found.contains(&w) {
-                    found.push(w);
+            for h in spokes {
+                // Both ends of the far side: at the border one of them has no spoke of its own.
+                for w in [t.target(h), t.apex(h)] {
+                    if !found.contains(&w) {
+                        found.push(w);
+                    }
                 }
             }
         }
