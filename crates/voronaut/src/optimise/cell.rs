@@ -319,7 +319,7 @@ mod tests {
     fn corners_of_cells_are_centres_of_circles() {
         let domain = Domain::shape("rect:-1,-1,1,1").unwrap();
         let field = Shock { phi: 1.0, lambda: 0.6 };
-        let plan = Plan::new(&domain, &[], &field, Target::Vertices(400)).unwrap();
+        let plan = Plan::new(domain.clone(), Vec::new(), &field, Target::Vertices(400)).unwrap();
         let scaled = Scaled { field: &field, factor: plan.scale_for(400.0) };
         let mut dual = Dual::new(&domain, scaled).unwrap();
         sample_segments(&mut dual, &plan.edges, &plan.arcs, scaled.factor, 0);

@@ -18,8 +18,7 @@ const BACKTRACKS: u32 = 8;
 /// After so many of them the quasi-Newton directions give way to Lloyd's steps, and after so many steps are halved in any case.
 const LLOYD_AFTER: u32 = 3;
 const SHORTER_AFTER: u32 = 6;
-/// Relaxation ends when so many steps in a row gain too little for the times that they were tried: one alone may have been a short one. Where that is
-/// asked of a step however often it was tried, surfaces of 2,000 vertices take 4 % longer, for a mean quality that is 0.0006 higher.
+/// Relaxation ends when so many steps in a row gain too little: one alone may have been a short one.
 const IN_A_ROW: u32 = 2;
 
 /// How a relaxation went.
@@ -97,13 +96,12 @@ pub(crate) fn relax<M: Moving>(
     let (mut small, mut saved) = (0, None);
     for _ in 0..steps {
         let before = descent.state.energy;
-        let tries = descent.step(dual, &mut saved)?;
+        let done = descent.step(dual, &mut saved)?;
         progress.advance(1)?;
         progress.sketch(&|| dual.sketch());
-        let asked = f64::from(tries.unwrap_or(BACKTRACKS)) * gain * before;
-        let is_small = cells.lower_energy() && before - descent.state.energy < asked;
+        let is_small = cells.lower_energy() && before - descent.state.energy < gain * before;
         small = if is_small { small + 1 } else { 0 };
-        if tries.is_none() || small == IN_A_ROW {
+        if !done || small == IN_A_ROW {
             descent.relaxed.stalled = true;
             break;
         }
@@ -121,8 +119,8 @@ struct Descent<'a, C> {
 }
 
 impl<C> Descent<'_, C> {
-    /// One step that lowers the energy, and how often it was tried; `None` if none was found, and the dual is as before.
-    fn step<M: Moving>(&mut self, dual: &mut M, saved: &mut Option<M::Saved>) -> Result<Option<u32>>
+    /// One step that lowers the energy; false if none was found, and the dual is as before.
+    fn step<M: Moving>(&mut self, dual: &mut M, saved: &mut Option<M::Saved>) -> Result<bool>
     where
         C: CellsOf<M>,
     {
@@ -142,7 +140,7 @@ impl<C> Descent<'_, C> {
             if next.energy <= self.state.energy || !self.cells.lower_energy() {
                 (self.relaxed.held, self.relaxed.flips) = (self.relaxed.held + held, self.relaxed.flips + flips);
                 self.accept(dual, before, next);
-                return Ok(Some(attempt));
+                return Ok(true);
             }
             let resting = self.rest.blame(dual, &self.state, &next);
             dual.take_back(before);
@@ -158,7 +156,7 @@ impl<C> Descent<'_, C> {
                 break;
             }
         }
-        Ok(None)
+        Ok(false)
     }
 
     /// Whether a share of a direction would gain enough if the energy were quadratic, with its minimum at the end of the whole direction.

@@ -37,7 +37,7 @@ const TOGETHER: usize = 256;
 pub(crate) struct Mending<M: Moving> {
     /// Of seeds that no trial was better for: where they and their neighbours were.
     in_vain: BTreeMap<(VertexId, Purpose), Ring<M::Site>>,
-    /// The seeds' sites, by id.
+    /// The seeds' sites, by id, ready.
     sites: Vec<M::Site>,
     /// Seeds that have moved since.
     moved: Vec<VertexId>,
@@ -81,10 +81,9 @@ impl<M: Moving> Mending<M> {
         self.measure(dual);
         let topology = dual.topology();
         let edges = topology.edges_with(|_| true);
-        let ready: Vec<M::Site> = self.sites.par_iter().with_min_len(64).map(|&site| dual.ready(site)).collect();
         let is_off = |&&h: &&HalfEdge| {
             let [u, v] = topology.ends(h);
-            !is_unit(dual.chord(u, [u, v].map(|v| ready[v.index()])))
+            !is_unit(dual.chord(u, [u, v].map(|v| self.sites[v.index()])))
         };
         let off: Vec<HalfEdge> = edges.par_iter().with_min_len(256).filter(is_off).copied().collect();
         let ends = off.into_iter().flat_map(|h| topology.ends(h)).collect();
@@ -114,11 +113,9 @@ impl<M: Moving> Mending<M> {
         let topology = dual.topology();
         let moved = marked(topology.vertex_slots(), self.moved.iter().map(|v| v.0));
         if self.sites.is_empty() {
-            self.sites = sites(dual);
+            self.sites = sites(dual).into_par_iter().with_min_len(64).map(|site| dual.ready(site)).collect();
         }
-        for v in self.moved.drain(..) {
-            self.sites[v.index()] = dual.site(v);
-        }
+        self.moved.clear();
         self.faces.resize(topology.face_slots(), ([VertexId(u32::MAX); 3], f64::NAN));
         let sites = &self.sites;
         self.faces.par_iter_mut().enumerate().with_min_len(256).for_each(|(f, (known, quality))| {
@@ -153,8 +150,13 @@ impl<M: Moving> Mending<M> {
                     queue.push_front(v);
                 } else if let Some(&by) = view.better.iter().find(|&&by| dual.shift_by(v, by)) {
                     dual.settle_move(v);
-                    self.moved.push(v);
-                    count += usize::from(view.is_worth(dual, v, purpose) || !went_back(dual, v, by));
+                    self.note(dual, v);
+                    let is_worth = view.is_worth(dual, v, purpose, &self.sites);
+                    if !is_worth && went_back(dual, v, by) {
+                        self.note(dual, v);
+                    } else {
+                        count += 1;
+                    }
                 } else if purpose != Purpose::Lengths {
                     self.in_vain.insert((v, purpose), view.ring);
                 }
@@ -163,9 +165,15 @@ impl<M: Moving> Mending<M> {
         count
     }
 
+    /// Notes where a seed has moved to.
+    fn note(&mut self, dual: &M, v: VertexId) {
+        self.moved.push(v);
+        self.sites[v.index()] = dual.ready(dual.site(v));
+    }
+
     /// What is around a seed, and where it would be better.
     fn view(&self, dual: &M, v: VertexId, purpose: Purpose) -> View<M::Site> {
-        let ring = Ring::of(dual, v);
+        let ring = Ring::of(dual, v, &self.sites);
         let better = match purpose {
             _ if self.in_vain.get(&(v, purpose)) == Some(&ring) => Vec::new(),
             Purpose::Lengths => ring.fitter(dual, v),
@@ -191,13 +199,13 @@ impl<S: Copy + PartialEq + Send + Sync> View<S> {
     }
 
     /// Whether a seed that has moved is better off: edges may have been flipped.
-    fn is_worth<M: Moving<Site = S>>(&self, dual: &M, v: VertexId, purpose: Purpose) -> bool {
+    fn is_worth<M: Moving<Site = S>>(&self, dual: &M, v: VertexId, purpose: Purpose, sites: &[S]) -> bool {
         let fit = |ring: &Ring<S>| ring.fit(dual, v, ring.centre, None);
         let is_better = |(now, was): (Fit, Fit)| match purpose {
             Purpose::Lengths => now.is_worth(&was),
             _ => now.least > was.least,
         };
-        self.is_of(dual, v) || fit(&Ring::of(dual, v)).zip(fit(&self.ring)).is_some_and(is_better)
+        self.is_of(dual, v) || fit(&Ring::of(dual, v, sites)).zip(fit(&self.ring)).is_some_and(is_better)
     }
 }
 
@@ -235,9 +243,9 @@ struct Ring<S> {
 }
 
 impl<S: Copy + PartialEq + Send + Sync> Ring<S> {
-    fn of<M: Moving<Site = S>>(dual: &M, v: VertexId) -> Self {
-        let link = |[a, b]: [VertexId; 2]| [dual.ready(dual.site(a)), dual.site(b)];
-        Self { centre: dual.ready(dual.site(v)), links: links(dual, v).map(link).collect() }
+    fn of<M: Moving<Site = S>>(dual: &M, v: VertexId, sites: &[S]) -> Self {
+        let site = |v: VertexId| sites[v.index()];
+        Self { centre: site(v), links: links(dual, v).map(|link| link.map(site)).collect() }
     }
 
     /// No edge may leave the unit range, or get farther out, unless needles come first, or the quality is poor beside an edge that must stay whole
@@ -296,7 +304,7 @@ impl<S: Copy + PartialEq + Send + Sync> Ring<S> {
     /// Moves of the seed at the centre by which the least quality is greater, the best first: where one trial after the other leads to, then what
     /// the first trials find.
     fn climbed<M: Moving<Site = S>>(&self, dual: &M, v: VertexId, limits: Limits) -> Vec<Vector> {
-        let mut better = self.better(dual, v, dual.site(v), Vector::default(), limits);
+        let mut better = self.better(dual, v, self.centre, Vector::default(), limits);
         for _ in 1..MOVES {
             let further = better.first().and_then(|&by| Some((by, dual.site_after(v, by)?)));
             let further = further.and_then(|(by, here)| self.better(dual, v, here, by, limits).first().copied());

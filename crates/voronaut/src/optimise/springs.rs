@@ -208,7 +208,7 @@ pub(super) mod tests {
 
     /// A dual as refinement leaves it.
     pub(crate) fn seeded<'a>(domain: &Domain, field: &'a dyn MetricField) -> Dual<'a> {
-        let plan = Plan::new(domain, &[], field, Target::Vertices(400)).unwrap();
+        let plan = Plan::new(domain.clone(), Vec::new(), field, Target::Vertices(400)).unwrap();
         let scaled = Scaled { field, factor: plan.scale_for(400.0) };
         let mut dual = Dual::new(domain, scaled).unwrap();
         sample_segments(&mut dual, &plan.edges, &plan.arcs, scaled.factor, 0);

@@ -3,7 +3,6 @@
 
 use super::options::{Centroid, Seeding};
 use super::{Job, MeshOptions};
-use crate::domain::Domain;
 use crate::dual::{Dual, Moving};
 use crate::error::Result;
 use crate::geodesic::LocalMetric;
@@ -33,9 +32,9 @@ const LONG: f64 = std::f64::consts::SQRT_2;
 
 impl<'a> Job<'a> {
     /// A dual whose segments are sampled, with the seeds of coarser meshes where the metric lets these be made; and whether it has such.
-    pub(super) fn begun(&self, domain: &Domain, plan: &Plan, count: usize, scale: f64) -> Result<(Dual<'a>, bool)> {
+    pub(super) fn begun(&self, plan: &Plan, count: usize, scale: f64) -> Result<(Dual<'a>, bool)> {
         let counts = self.counts(plan, count, scale);
-        let (level, mut dual) = self.coarsest(domain, plan, scale, &counts)?;
+        let (level, mut dual) = self.coarsest(plan, scale, &counts)?;
         let progress: &dyn Progress = &Within(self.progress);
         for finer in (0..level).rev() {
             let before = dual.vertex_count();
@@ -71,9 +70,9 @@ impl<'a> Job<'a> {
 
     /// The coarsest level whose mesh resolves the metric, as far as the seeds of the last one tell: these are as dense, by the metric, as
     /// those of any other. And its dual, whose segments are sampled, with seeds if a coarser level has an idea of the metric.
-    fn coarsest(&self, domain: &Domain, plan: &Plan, scale: f64, counts: &[usize]) -> Result<(usize, Dual<'a>)> {
+    fn coarsest(&self, plan: &Plan, scale: f64, counts: &[usize]) -> Result<(usize, Dual<'a>)> {
         let last = counts.len() - 1;
-        let probe = self.sampled(domain, plan, scale, last)?;
+        let probe = self.sampled(plan, scale, last)?;
         if last == 0 {
             return Ok((0, probe));
         }
@@ -89,7 +88,7 @@ impl<'a> Job<'a> {
         let shares: Vec<f64> = (1..=last).map(rough).collect();
         let at_most = |most: f64| (1..=last).rev().find(|&level| shares[level - 1] <= most).unwrap_or(0);
         let (level, first) = (at_most(ROUGH), at_most(HALF_KNOWN));
-        let mut dual = if first == last { probe } else { self.sampled(domain, plan, scale, first)? };
+        let mut dual = if first == last { probe } else { self.sampled(plan, scale, first)? };
         if level < first && first < last {
             dual = self.filled(dual, counts[first - 1])?;
         }
@@ -109,8 +108,8 @@ impl<'a> Job<'a> {
         Ok(dual)
     }
 
-    fn sampled(&self, domain: &Domain, plan: &Plan, scale: f64, level: usize) -> Result<Dual<'a>> {
-        let mut dual = Dual::new(domain, Scaled { field: self.field, factor: factor(scale, level) })?;
+    fn sampled(&self, plan: &Plan, scale: f64, level: usize) -> Result<Dual<'a>> {
+        let mut dual = Dual::new(&plan.domain, Scaled { field: self.field, factor: factor(scale, level) })?;
         sample_segments(&mut dual, &plan.edges, &plan.arcs, scale, level as u32);
         Ok(dual)
     }
@@ -134,6 +133,7 @@ fn before_halving(dual: &Dual, finer: usize) -> usize {
 mod tests {
     use super::super::settle::Stopwatch;
     use super::*;
+    use crate::domain::Domain;
     use crate::geometry::{Point, Tensor};
     use crate::metric::{MetricField, Shock};
     use crate::progress::Silent;
@@ -144,11 +144,11 @@ mod tests {
     fn level(domain: &Domain, field: &dyn MetricField, count: usize) -> (usize, usize) {
         let (options, watch) = (MeshOptions::default(), Stopwatch::new(&Silent));
         let job = Job::new(field, &options, &watch);
-        let plan = Plan::new(domain, &[], field, Target::Vertices(count)).unwrap();
+        let plan = Plan::new(domain.clone(), Vec::new(), field, Target::Vertices(count)).unwrap();
         let scale = plan.scale_for(count as f64);
         let counts = job.counts(&plan, count, scale);
-        let (level, _) = job.coarsest(domain, &plan, scale, &counts).unwrap();
-        let (dual, is_even) = job.begun(domain, &plan, count, scale).unwrap();
+        let (level, _) = job.coarsest(&plan, scale, &counts).unwrap();
+        let (dual, is_even) = job.begun(&plan, count, scale).unwrap();
         assert_eq!(is_even, level > 0);
         assert!(dual.planar().is_embedded());
         (level, dual.vertex_count())

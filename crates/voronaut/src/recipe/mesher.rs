@@ -11,7 +11,7 @@ use crate::metric::{MetricField, Scaled, Steadied};
 use crate::optimise::Relaxed;
 use crate::progress::Progress;
 use crate::quality;
-use crate::sampling::demand_memory;
+use crate::sampling::{Plan, demand_memory};
 use crate::triangulation::VertexId;
 
 /// The metric turns by about so much over a unit of the sampling: the first with which stars come to agree.
@@ -62,23 +62,23 @@ pub(super) fn by_stars(
 
 /// What stars are refined from.
 struct Start<'a> {
-    domain: Domain,
+    plan: Plan,
     dual: Dual<'a>,
     relaxation: Relaxed,
 }
 
 /// Relaxed seeds; where the size of a unit mesh is given, an error if they are too many beside that.
 fn sampled<'a>(job: &mut Job<'a>, domain: &Domain, unit: Option<usize>) -> Result<Start<'a>> {
-    let (domain, plan, count, scale) = job.watch.time("plan", || job.plan(domain))?;
+    let (plan, count, scale) = job.watch.time("plan", || job.plan(domain))?;
     let unit = unit.unwrap_or(count);
     if count > most(unit) {
         let what = format!("stars need about {count} vertices to agree, where a unit mesh has {unit}");
         return Err(Error::limit(what, NEEDS_MORE));
     }
     demand_memory(count as f64, most(unit) as f64, job.options.memory_limit)?;
-    let mut dual = job.watch.time("seed", || job.seed(&domain, None, &plan, count, scale))?;
+    let mut dual = job.watch.time("seed", || job.seed(None, &plan, count, scale))?;
     let relaxation = job.watch.time("relax", || job.relax(&mut dual, None, job.options.effort))?;
-    Ok(Start { domain, dual, relaxation })
+    Ok(Start { plan, dual, relaxation })
 }
 
 fn most(unit: usize) -> usize {
@@ -91,7 +91,7 @@ fn agreed(job: &mut Job, start: &Start, scaled: &Scaled, unit: usize) -> Result<
     let asked = Consistency { radius: UNIT_RADIUS, most: most(unit) };
     let found = job.watch.time("stars", || consistent(start.dual.planar().clone(), scaled, asked))?;
     job.progress.begin("checking", 1)?;
-    let mesh = start.domain.mesh_of(&found.planar, |v| corner(&start.dual, v));
+    let mesh = start.plan.domain.mesh_of(&found.planar, |v| corner(&start.dual, v));
     let validity = job.watch.time("check", || quality::validity(&mesh));
     validity.demand()?;
     Ok(Meshed {

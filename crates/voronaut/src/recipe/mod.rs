@@ -39,7 +39,7 @@ pub use remesh_input::{Asked, Keep, RemeshInput, RemeshSizes};
 pub use surface_field::{SurfaceSource, metric_on_surface};
 
 use crate::canvas::{Canvas, CanvasFigures};
-use crate::domain::{Domain, Pair, paired};
+use crate::domain::{Domain, paired};
 use crate::dual::{Dual, Kind, Moving};
 use crate::elementary::Elementary;
 use crate::error::Result;
@@ -173,23 +173,23 @@ fn mesh_straight(
     protection::demand_possible(options)?;
     let watch = Stopwatch::new(progress);
     let mut job = Job::new(field, options, &watch);
-    let (domain, plan, count, scale) = watch.time("plan", || job.plan(domain))?;
+    let (plan, count, scale) = watch.time("plan", || job.plan(domain))?;
     let asked = if options.seeding == Seeding::Protected { count } else { options.road().seeds_asked(count) };
     let on_canvas = asked as f64 * f64::from(options.canvas_size);
     demand_memory(count as f64, on_canvas, options.memory_limit)?;
-    let canvas = job.canvas(&domain, count)?;
-    let mut dual = watch.time("seed", || job.seed(&domain, canvas.as_ref(), &plan, count, scale))?;
+    let canvas = job.canvas(&plan, count)?;
+    let mut dual = watch.time("seed", || job.seed(canvas.as_ref(), &plan, count, scale))?;
     let (relaxation, aim) = job.relaxed(&mut dual, canvas.as_ref(), aim.filter(|_| job.may_polish()))?;
-    let protected = job.protect(&domain, &mut dual)?;
+    let protected = job.protect(&plan, &mut dual)?;
     // Polishing decides on the edges.
     let settled = if aim.is_none() && settles {
-        watch.time("settle", || settle::settle(&mut dual, &domain, job.options, job.progress))?
+        watch.time("settle", || settle::settle(&mut dual, &plan, job.options, job.progress))?
     } else {
         settle::Settled::default()
     };
     let polished = aim.map(|aim| watch.time("polish", || job.polish(&mut dual, aim))).transpose()?;
-    let (mesh, validity) = watch.time("check", || job.finish(&domain, &dual, &plan.pairs))?;
-    let (net, protection) = job.net(&domain, &dual, protected);
+    let (mesh, validity) = watch.time("check", || job.finish(&plan, &dual))?;
+    let (net, protection) = job.net(&plan, &dual, protected);
     Ok(Meshed {
         mesh,
         validity,
@@ -247,8 +247,8 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// The domain with its curves simplified as allowed, its plan, and the count and scale to start from.
-    fn plan(&mut self, domain: &Domain) -> Result<(Domain, Plan, usize, f64)> {
+    /// The plan of the domain with its curves simplified as allowed, and the count and scale to start from.
+    fn plan(&mut self, domain: &Domain) -> Result<(Plan, usize, f64)> {
         self.progress.begin("planning", 1)?;
         let tolerance = self.options.hausd.unwrap_or(domain.pslg().tolerance);
         let (target, limit) = (self.target(), self.options.memory_limit);
@@ -258,15 +258,14 @@ impl<'a> Job<'a> {
             paired(&simplify(&whole, &of_whole, &field, tolerance), &self.options.periodic)
         };
         let stays = target == Target::Metric && tolerance > 0.0;
-        let (mut simplified, pairs) = if stays { simplified_at(1.0)? } else { (whole.clone(), of_whole.clone()) };
-        let mut plan = Plan::new(&simplified, &pairs, self.field, target)?;
+        let (simplified, pairs) = if stays { simplified_at(1.0)? } else { (whole.clone(), of_whole.clone()) };
+        let mut plan = Plan::new(simplified, pairs, self.field, target)?;
         let (mut count, mut scale) = plan.start(target, limit)?;
         if tolerance > 0.0 && !stays {
             // Fewer corners let the metric be finer, and the other way round: two rounds settle it.
             for _ in 0..2 {
-                let pairs;
-                (simplified, pairs) = simplified_at(scale)?;
-                plan = plan.again(&simplified, &pairs, self.field, target)?;
+                let (simplified, pairs) = simplified_at(scale)?;
+                plan = plan.again(simplified, pairs, self.field, target)?;
                 (count, scale) = plan.start(target, limit)?;
             }
         }
@@ -276,7 +275,7 @@ impl<'a> Job<'a> {
                 "{count} vertices were asked for, but the domain's own corners are {corners}: simplify with `hausd`"
             ));
         }
-        Ok((simplified, plan, count, scale))
+        Ok((plan, count, scale))
     }
 
     /// A count that was asked for is met exactly; one that follows from the metric is an estimate.
@@ -286,17 +285,10 @@ impl<'a> Job<'a> {
 
     /// Seeds the domain with `count` vertices; the scale follows from what the seeds' distances turn out to be. Where
     /// the scale is given, the count follows instead.
-    fn seed(
-        &mut self,
-        domain: &Domain,
-        canvas: Option<&Canvas>,
-        plan: &Plan,
-        mut count: usize,
-        mut scale: f64,
-    ) -> Result<Dual<'a>> {
+    fn seed(&mut self, canvas: Option<&Canvas>, plan: &Plan, mut count: usize, mut scale: f64) -> Result<Dual<'a>> {
         for round in 1.. {
             self.progress.begin("seeding", count as u64)?;
-            let (mut dual, is_even) = self.begun(domain, plan, count, scale)?;
+            let (mut dual, is_even) = self.begun(plan, count, scale)?;
             self.is_even = is_even;
             if let Some(canvas) = canvas.filter(|_| self.options.seeding == Seeding::Farthest) {
                 self.seed_farthest(canvas, &mut dual, count)?;
@@ -394,11 +386,11 @@ impl<'a> Job<'a> {
         polish(dual, aim.function, aim.norm, patience, self.progress)
     }
 
-    fn finish(&self, domain: &Domain, dual: &Dual, pairs: &[Pair]) -> Result<(Mesh, Validity)> {
+    fn finish(&self, plan: &Plan, dual: &Dual) -> Result<(Mesh, Validity)> {
         self.progress.begin("checking", 1)?;
         self.progress.sketch(&|| dual.sketch());
-        let mut mesh = dual.to_mesh(domain);
-        mesh.periodic = correspondence(&mesh, domain, pairs)?;
+        let mut mesh = dual.to_mesh(&plan.domain);
+        mesh.periodic = correspondence(&mesh, plan)?;
         let validity = quality::validity(&mesh);
         validity.demand()?;
         Ok((mesh, validity))

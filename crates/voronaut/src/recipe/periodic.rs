@@ -1,21 +1,21 @@
 //! The vertices of a mesh that correspond, because two curves of the boundary were sampled as one.
 
-use crate::domain::{Domain, Pair};
+use crate::domain::Pair;
 use crate::error::{Error, Result};
 use crate::geometry::Point;
 use crate::mesh::{Mesh, Network, Periodic};
+use crate::sampling::Plan;
 use std::collections::HashMap;
 
 /// The corresponding vertices of a mesh of the domain, by its pairs of curves.
 ///
 /// # Errors
 /// [`Error::Limit`] where rounding left the one curve another vertex than the other.
-pub(super) fn correspondence(mesh: &Mesh, domain: &Domain, pairs: &[Pair]) -> Result<Vec<Periodic>> {
-    pairs.iter().map(|pair| of_pair(mesh, domain, pair)).collect()
+pub(super) fn correspondence(mesh: &Mesh, plan: &Plan) -> Result<Vec<Periodic>> {
+    plan.pairs.iter().map(|pair| of_pair(mesh, &plan.domain.pslg().points, pair)).collect()
 }
 
-fn of_pair(mesh: &Mesh, domain: &Domain, pair: &Pair) -> Result<Periodic> {
-    let points = &domain.pslg().points;
+fn of_pair(mesh: &Mesh, points: &[Point], pair: &Pair) -> Result<Periodic> {
     let corners: [Vec<Point>; 2] = pair.runs.each_ref().map(|run| run.iter().map(|&v| points[v as usize]).collect());
     let [first, second] = [0, 1].map(|side| path(mesh, pair.labels[side], corners[side][0]));
     let numbers = corners.each_ref().map(|corners| corners.iter().map(|&p| key(p)).zip(0..).collect());

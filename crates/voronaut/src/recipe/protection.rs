@@ -5,7 +5,6 @@ use super::surface_pass::{Checked, Pass, Setting};
 use super::{Job, MeshOptions, Seeding};
 use crate::canvas::{self, Canvas};
 use crate::diagram::{Diagram, RESOLVE_ROUNDS, SurfaceDiagram, resolve};
-use crate::domain::Domain;
 use crate::dual::{Dual, Moving, Road};
 use crate::error::{Error, Result};
 use crate::figures;
@@ -13,6 +12,7 @@ use crate::geodesic::Method;
 use crate::geometry::Point;
 use crate::net::{Ball, Net};
 use crate::optimise::{Ending, Protected, measured, measured_on_surface, protect, protect_on_surface};
+use crate::sampling::Plan;
 use crate::surface::Place;
 
 /// Refuses to look for what there cannot be: equilateral triangles, which are protected best, are by sqrt(3) epsilon.
@@ -35,7 +35,7 @@ impl Job<'_> {
     /// The metric is found invalid at a seed.
     pub(super) fn protect(
         &mut self,
-        domain: &Domain,
+        plan: &Plan,
         dual: &mut Dual,
     ) -> Result<Option<(Protected, figures::CanvasNerve)>> {
         if self.options.seeding != Seeding::Protected {
@@ -44,15 +44,15 @@ impl Job<'_> {
         self.progress.begin("protecting", 1)?;
         let protected = self.watch.time("protect", || protect(dual, self.options.protection, self.progress))?;
         self.progress.begin("comparing with a canvas", 1)?;
-        let nerve = self.watch.time("raw_nerve", || self.raw_nerve(domain, dual))?;
+        let nerve = self.watch.time("raw_nerve", || self.raw_nerve(plan, dual))?;
         self.notes.extend(notes(&protected, self.options, nerve));
         Ok(Some((protected, nerve)))
     }
 
     /// The nerve of the vertices on a canvas that is refined where it does not tell Voronoi vertices apart, held against the
     /// exact dual. (Where the domain touches itself in points, of the vertices there only one counts.)
-    fn raw_nerve(&self, domain: &Domain, dual: &Dual) -> Result<figures::CanvasNerve> {
-        let number = dual.numbering(domain);
+    fn raw_nerve(&self, plan: &Plan, dual: &Dual) -> Result<figures::CanvasNerve> {
+        let number = dual.numbering(&plan.domain);
         let mut seeds: Vec<(u32, Point)> =
             dual.topology().vertices().map(|v| (number[v.index()], dual.position(v))).collect();
         seeds.sort_by_key(|seed| seed.0);
@@ -60,7 +60,7 @@ impl Job<'_> {
         let seeds: Vec<Point> = seeds.into_iter().map(|seed| seed.1).collect();
         let field = dual.field();
         let size = canvas::size_for(seeds.len(), self.options.canvas_size);
-        let resolved = resolve(Canvas::intrinsic(domain, field, size)?, field, &seeds, RESOLVE_ROUNDS)?;
+        let resolved = resolve(Canvas::intrinsic(&plan.domain, field, size)?, field, &seeds, RESOLVE_ROUNDS)?;
         let diagram = Diagram::new(&resolved.canvas, field, &seeds)?;
         let nerve = super::dual(&diagram, field, Road::Both, self.progress).raw_nerve;
         let canvas_vertices = resolved.canvas.vertex_count();
@@ -70,7 +70,7 @@ impl Job<'_> {
     /// The net of the mesh's vertices, by their numbers in the mesh, where it is wanted, and how protection went.
     pub(super) fn net(
         &mut self,
-        domain: &Domain,
+        plan: &Plan,
         dual: &Dual,
         protected: Option<(Protected, figures::CanvasNerve)>,
     ) -> (Option<Net>, Option<figures::Protection>) {
@@ -80,7 +80,7 @@ impl Job<'_> {
             None if self.options.net => self.watch.time("net", || measured(dual)),
             None => return (None, None),
         };
-        let number = dual.numbering(domain);
+        let number = dual.numbering(&plan.domain);
         (Some(numbered(net, |v| number[v as usize])), account)
     }
 }

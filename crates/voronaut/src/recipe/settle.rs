@@ -5,14 +5,13 @@ use super::options::{self, Centroid, Seeding};
 use super::{BLOCKED_SHARE, EXCHANGED_SHARE, Job, MeshOptions};
 use crate::canvas::{Canvas, CanvasFigures};
 use crate::diagram::{Care, Diagram, Flat, Ground};
-use crate::domain::Domain;
 use crate::dual::{Consultation, Disagreement, Dual, Effort, Moving};
 use crate::error::Result;
 use crate::geodesic::{Margin, Method};
 use crate::geometry::Point;
 use crate::optimise::{Cells, Mending, OnCanvas, Patience, Relaxed, exchange, meet_blocked_flips, relax};
 use crate::progress::Progress;
-use crate::sampling::{demand_memory, refine_farthest};
+use crate::sampling::{Plan, demand_memory, refine_farthest};
 use crate::triangulation::VertexId;
 use crate::{canvas, figures};
 use std::cell::RefCell;
@@ -21,12 +20,7 @@ use std::cell::RefCell;
 ///
 /// # Errors
 /// The canvas finds the metric invalid somewhere.
-pub(super) fn settle(
-    dual: &mut Dual,
-    domain: &Domain,
-    options: &MeshOptions,
-    progress: &dyn Progress,
-) -> Result<Settled> {
+pub(super) fn settle(dual: &mut Dual, plan: &Plan, options: &MeshOptions, progress: &dyn Progress) -> Result<Settled> {
     progress.begin("settling edges", 1)?;
     dual.flip_all(Effort::Full);
     let found = dual.consult_diagram(options.road(), options.canvas, options.canvas_size, options.geodesic)?;
@@ -38,7 +32,7 @@ pub(super) fn settle(
         raw_nerve: None,
         counters: m.diagram,
     });
-    Ok(Settled { dual: account(dual, domain, found), canvas, diagram })
+    Ok(Settled { dual: account(dual, plan, found), canvas, diagram })
 }
 
 /// What the report says of the last pass.
@@ -49,8 +43,8 @@ pub(super) struct Settled {
     pub(super) diagram: Option<figures::Diagram>,
 }
 
-fn account(dual: &mut Dual, domain: &Domain, found: Consultation) -> figures::Dual {
-    let number = dual.numbering(domain);
+fn account(dual: &mut Dual, plan: &Plan, found: Consultation) -> figures::Dual {
+    let number = dual.numbering(&plan.domain);
     let ends = |edge: [VertexId; 2]| edge.map(|v| number[v.index()]);
     let disagreement = |d: Disagreement| figures::Disagreement {
         edge: ends(d.edge),
@@ -200,14 +194,14 @@ impl Job<'_> {
     ///
     /// # Errors
     /// The memory limit, or the metric at a canvas vertex.
-    pub(super) fn canvas(&mut self, domain: &Domain, seeds: usize) -> Result<Option<Canvas>> {
+    pub(super) fn canvas(&mut self, plan: &Plan, seeds: usize) -> Result<Option<Canvas>> {
         if self.options.seeding != Seeding::Farthest && self.options.centroid == Centroid::Tangent {
             return Ok(None);
         }
         let size = canvas::size_for(seeds, self.options.canvas_size);
         demand_memory(seeds as f64, size as f64, self.options.memory_limit)?;
         self.progress.begin("canvas", 1)?;
-        let canvas = self.watch.time("canvas", || Canvas::new(self.options.canvas, domain, self.field, size))?;
+        let canvas = self.watch.time("canvas", || Canvas::new(self.options.canvas, &plan.domain, self.field, size))?;
         self.canvas = Some(canvas.figures());
         Ok(Some(canvas))
     }

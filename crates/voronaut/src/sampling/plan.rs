@@ -31,6 +31,8 @@ const BYTES_PER_VERTEX: f64 = 1200.0;
 
 /// A domain measured by a metric.
 pub(crate) struct Plan {
+    /// The domain.
+    pub domain: Domain,
     /// The integral of sqrt(det M).
     pub complexity: f64,
     /// The constrained edges of the domain's triangulation; of two that are cut alike the first.
@@ -74,7 +76,7 @@ impl Plan {
     ///
     /// # Errors
     /// The metric is not positive definite somewhere, or its complexity not finite.
-    pub(crate) fn new(domain: &Domain, pairs: &[Pair], field: &dyn MetricField, target: Target) -> Result<Self> {
+    pub(crate) fn new(domain: Domain, pairs: Vec<Pair>, field: &dyn MetricField, target: Target) -> Result<Self> {
         // Elsewhere the integral is only where the search for scale or count starts.
         let integral = if matches!(target, Target::Complexity(_)) { complexity } else { rough_complexity };
         let complexity = integral(field, &domain.triangles())?;
@@ -87,8 +89,8 @@ impl Plan {
     /// As [`Plan::new`].
     pub(crate) fn again(
         &self,
-        domain: &Domain,
-        pairs: &[Pair],
+        domain: Domain,
+        pairs: Vec<Pair>,
         field: &dyn MetricField,
         target: Target,
     ) -> Result<Self> {
@@ -99,11 +101,11 @@ impl Plan {
     }
 
     /// That of a domain whose complexity is known.
-    pub(crate) fn with(domain: &Domain, pairs: &[Pair], field: &dyn MetricField, complexity: f64) -> Self {
-        let edges = stretches(domain, pairs);
-        let arcs = edges.par_iter().map(|edge| edge.measured(domain, field)).collect();
-        let corners = domain.planar().topology.vertex_count();
-        Self { complexity, edges, arcs, pairs: pairs.to_vec(), corners, copies: copies(domain) }
+    pub(crate) fn with(domain: Domain, pairs: Vec<Pair>, field: &dyn MetricField, complexity: f64) -> Self {
+        let edges = stretches(&domain, &pairs);
+        let arcs = edges.par_iter().map(|edge| edge.measured(&domain, field)).collect();
+        let (corners, copies) = (domain.planar().topology.vertex_count(), copies(&domain));
+        Self { domain, complexity, edges, arcs, pairs, corners, copies }
     }
 
     /// Vertices of the domain itself, with copies: no mesh has fewer.
@@ -380,7 +382,7 @@ mod tests {
                     + Tensor::square(across) * 64.0
                     + Tensor::new(0.0, 0.0, 4e4 * (-20.0 * p.x).exp())
             };
-            let plan = Plan::new(&domain, &[], &field, crate::sampling::Target::Metric).unwrap();
+            let plan = Plan::new(domain.clone(), Vec::new(), &field, crate::sampling::Target::Metric).unwrap();
             let mut dual = Dual::new(&domain, Scaled { field: &field, factor: 1.0 }).unwrap();
             sample_segments(&mut dual, &plan.edges, &plan.arcs, 1.0, 0);
             let edges = dual.topology().edges().filter(|&h| dual.topology().constraint(h).is_some());
@@ -393,7 +395,7 @@ mod tests {
     fn walls_face_to_face_are_cut_in_little_time() {
         let domain = Domain::shape("rect:0,0,1,1e-6").unwrap();
         let field = |_: Point| Tensor::isotropic(1e-4);
-        let plan = Plan::new(&domain, &[], &field, crate::sampling::Target::Metric).unwrap();
+        let plan = Plan::new(domain.clone(), Vec::new(), &field, crate::sampling::Target::Metric).unwrap();
         let mut dual = Dual::new(&domain, Scaled { field: &field, factor: 1.0 }).unwrap();
         assert_eq!(sample_segments(&mut dual, &plan.edges, &plan.arcs, 1.0, 0), 2 * 9_999);
         assert!(dual.counters().flips < 40 * 10_000, "{}", dual.counters().flips);

@@ -111,7 +111,7 @@ fn work_grows_no_faster_than_n_log_n() {
     let domain = Domain::shape("rect:-2,-2,2,2").unwrap();
     let field = Swirl::default();
     let work = |seeds: usize| {
-        let plan = Plan::new(&domain, &[], &field, Target::Vertices(seeds)).unwrap();
+        let plan = Plan::new(domain.clone(), Vec::new(), &field, Target::Vertices(seeds)).unwrap();
         let (count, factor) = plan.start(Target::Vertices(seeds), u64::MAX).unwrap();
         let canvas = Canvas::intrinsic(&domain, &field, 10 * seeds).unwrap();
         let mut dual = Dual::new(&domain, Scaled { field: &field, factor }).unwrap();

@@ -47,7 +47,7 @@ fn stops(least: u64, job: impl Fn(&dyn Progress) -> Result<()>) {
 fn planar_meshes() {
     let domain = Domain::shape("rect:-1,-1,1,1").unwrap();
     let metrics: [&dyn MetricField; 2] = [&Swirl::default(), &Uniform::default()];
-    for (metric, seeding, least) in [(metrics[0], Seeding::Sizing, 15), (metrics[1], Seeding::Protected, 15)] {
+    for (metric, seeding, least) in [(metrics[0], Seeding::Sizing, 20), (metrics[1], Seeding::Protected, 22)] {
         let options = MeshOptions { vertices: Some(300), seeding, canvas_size: 3, ..MeshOptions::default() };
         stops(least, |progress| recipe::mesh(&domain, metric, &options, progress).map(drop));
     }
@@ -59,7 +59,7 @@ fn polished_meshes() {
     let options = MeshOptions { vertices: Some(200), polish: 5, effort: Effort::Best, ..MeshOptions::default() };
     let function: Snapshot = Expression::parse("sin(3*x)*cos(5*y)", Variables::Plane).unwrap().into();
     let aim = || Some(Aim { function: &function, norm: Norm::default(), known_to: 0.0 });
-    stops(30, |progress| recipe::mesh_for(&domain, &Uniform::default(), aim(), &options, progress).map(drop));
+    stops(45, |progress| recipe::mesh_for(&domain, &Uniform::default(), aim(), &options, progress).map(drop));
 }
 
 #[test]

@@ -36,22 +36,22 @@ impl Divisible for InPlane<'_> {
         // The limit is that of each part.
         let (options, watch) = (MeshOptions { memory_limit: u64::MAX, ..options.clone() }, Stopwatch::new(progress));
         let mut job = Job::new(field, &options, &watch);
-        let (domain, plan, count, scale) = job.plan(self.domain)?;
+        let (plan, count, scale) = job.plan(self.domain)?;
         let vertices = count - plan.copies();
         let parts = number_of_parts(vertices, parts)?;
-        let coarse = coarse_mesh(&domain, field, parts, &options, progress)?;
+        let coarse = coarse_mesh(&plan.domain, field, parts, &options, progress)?;
         let corners: Vec<[Point; 3]> = coarse.triangles.iter().map(|&triangle| coarse.corners_of(triangle)).collect();
         let areas = complexities(field, &corners)?;
         let centres: Vec<Point3> = corners.iter().map(|&corners| in_space(centroid(corners))).collect();
         let owner = owners(&coarse.triangles, &centres, &areas, parts);
         let domains = Cuts::new(&coarse, &owner, field, scale).domains(parts)?;
-        let of_part = |(domain, area)| Plan::with(domain, &[], field, area);
-        let plans: Vec<Plan> = domains.iter().zip(areas_of(&owner, &areas, parts)).map(of_part).collect();
-        let counts = counts_of(&domains, &plans, scale, vertices);
-        let part = |(domain, vertices)| Part::new(self, corner_mesh(domain), vertices);
-        let parts = domains.iter().zip(counts).map(part);
-        let complexity = plan.complexity;
-        Ok(Partition { parts: parts.collect(), scale, complexity, vertices, notes: job.notes, kept: kept(&domain) })
+        let of_part = |(domain, area)| Plan::with(domain, Vec::new(), field, area);
+        let plans: Vec<Plan> = domains.into_iter().zip(areas_of(&owner, &areas, parts)).map(of_part).collect();
+        let counts = counts_of(&plans, scale, vertices);
+        let part = |(plan, vertices): (&Plan, usize)| Part::new(self, corner_mesh(&plan.domain), vertices);
+        let parts = plans.iter().zip(counts).map(part);
+        let (complexity, kept) = (plan.complexity, kept(&plan.domain));
+        Ok(Partition { parts: parts.collect(), scale, complexity, vertices, notes: job.notes, kept })
     }
 
     /// That of a domain whose straight runs have no vertices inside.
@@ -184,8 +184,8 @@ impl Cuts<'_> {
 }
 
 /// How many vertices the parts have, those on cuts each counted in two.
-fn counts_of(domains: &[Domain], plans: &[Plan], scale: f64, vertices: usize) -> Vec<usize> {
-    let corners = domains.iter().flat_map(|domain| domain.pslg().points.iter().map(|&p| position_of(p)));
+fn counts_of(plans: &[Plan], scale: f64, vertices: usize) -> Vec<usize> {
+    let corners = plans.iter().flat_map(|plan| plan.domain.pslg().points.iter().map(|&p| position_of(p)));
     let all = corners.clone().count();
     let shared = all - distinct(corners).len();
     let fixed: Vec<f64> = plans.iter().map(|plan| plan.boundary_vertices(scale) - plan.copies() as f64).collect();
