@@ -4,6 +4,7 @@
 //! without doubled edges, and lets no triangle turn away from the surface's normals. What the metric is around a seed, and where its neighbours are, is
 //! told in a chart there (RR-9103, section 12).
 
+use super::tried::{Landing, Tried};
 use super::{Kind, Moving, unit_share};
 use crate::elementary::Elementary;
 use crate::error::{Error, Result};
@@ -34,6 +35,7 @@ pub(crate) struct SurfaceDual<'a> {
     pub(super) factor: f64,
     pub(super) state: State,
     pub(super) flips: u64,
+    tried: Tried,
 }
 
 /// What moves and flips change. Vertex i of the topology is seed i.
@@ -43,7 +45,7 @@ pub(crate) struct State {
     pub(super) places: Vec<Place>,
     pub(super) planes: Vec<TangentPlane>,
     /// What the triangles at a seed are to face.
-    facing: Vec<Vector3>,
+    pub(super) facing: Vec<Vector3>,
     pub(super) locals: Vec<LocalMetric>,
     pub(super) measured: Vec<Measured>,
     kinds: Vec<Kind>,
@@ -95,6 +97,7 @@ impl<'a> SurfaceDual<'a> {
             factor,
             state: State { topology, places, planes, facing, locals, measured, kinds },
             flips: 0,
+            tried: Tried::default(),
         };
         dual.measure_all()?;
         Ok(dual)
@@ -127,6 +130,7 @@ impl<'a> SurfaceDual<'a> {
     pub(crate) fn rescale(&mut self, factor: f64) -> Result<()> {
         let ratio = factor / self.factor;
         self.factor = factor;
+        self.tried.forget();
         if !(1.0 / ALIKE..=ALIKE).contains(&ratio) {
             self.state.topology.change_lengths(|_, _| f64::NAN);
             return self.measure_all();
@@ -344,13 +348,6 @@ fn upright([a, b, c]: [Point3; 3], normals: [Vector3; 3]) -> f64 {
     normals.iter().map(|n| n.dot(normal)).fold(1.0, f64::min)
 }
 
-/// Where a seed comes to lie, and the surface's normal there.
-#[derive(Clone, Copy)]
-struct Landing {
-    place: Place,
-    normal: Vector3,
-}
-
 /// A place of a surface, the tensor there and, where that was asked for, its logarithm.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct SurfaceSite {
@@ -398,12 +395,17 @@ impl Moving for SurfaceDual<'_> {
     }
 
     fn shift_together(&mut self, moves: &[(VertexId, Vector)]) -> Vec<bool> {
-        let found = moves.par_iter().with_min_len(64).map(|&(v, by)| self.landing(v, by));
+        let landing = |v: VertexId, by| {
+            let known = self.tried.landing(v, &self.state.places[v.index()], by);
+            known.or_else(|| self.landing(v, by))
+        };
+        let found = moves.par_iter().with_min_len(64).map(|&(v, by)| landing(v, by));
         let mut landings = vec![None; self.state.places.len()];
         moves.iter().zip(found.collect::<Vec<_>>()).for_each(|(&(v, _), found)| landings[v.index()] = found);
         let moving = landings.iter().map(Option::is_some).collect();
         let moving = self.topology().movable_together(moving, |f, moving| self.would_turn(f, &landings, moving));
         self.carry_lengths(&landings, &moving);
+        self.tried.note(&self.state, moves.iter().copied().filter(|(v, _)| moving[v.index()]));
         let State { places, planes, facing, .. } = &mut self.state;
         let seeds = places.par_iter_mut().zip(planes).zip(facing).zip(&landings).zip(&moving).with_min_len(256);
         seeds.for_each(|((((place, plane), facing), landing), &moves)| {
@@ -426,6 +428,7 @@ impl Moving for SurfaceDual<'_> {
     }
 
     fn settle_moves(&mut self) -> Result<u64> {
+        self.tried.recall(&mut self.state);
         let is_due = |local: &LocalMetric, by: Vector| local.tensor.length(by) >= STILL;
         self.measure_each(is_due, |local, field, tensor| local.moved_to(field, Point::default(), tensor))?;
         Ok(self.flip_all())
@@ -442,6 +445,7 @@ impl Moving for SurfaceDual<'_> {
     }
 
     fn take_back(&mut self, saved: &State) {
+        self.tried.keep(&mut self.state);
         self.state.copy_from(saved);
     }
 

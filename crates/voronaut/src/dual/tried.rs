@@ -1,0 +1,84 @@
+//! What a step that was taken back has found out about places, which the next try of the same step leads most seeds to again.
+
+use super::on_surface::State;
+use crate::geometry::{Vector, Vector3};
+use crate::surface::Place;
+use crate::triangulation::VertexId;
+
+/// The last moves of all seeds at once, and the state that those taken back had led to. The way to a place, the metric there and the length of an edge between two
+/// hang on where seeds were and on the metric's factor alone, so that they need not be found again.
+#[derive(Default)]
+pub(super) struct Tried {
+    /// Of seeds that went all the way, by id, from where and by what.
+    moves: Vec<Option<Move>>,
+    /// The same of the moves that were taken back.
+    then: Vec<Option<Move>>,
+    state: State,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+struct Move {
+    from: Place,
+    by: Vector,
+}
+
+impl Tried {
+    /// Nothing is known.
+    pub(super) fn forget(&mut self) {
+        *self = Self::default();
+    }
+
+    /// Where a move has led before.
+    pub(super) fn landing(&self, v: VertexId, from: &Place, by: Vector) -> Option<Landing> {
+        let known = self.then.get(v.index()).copied().flatten();
+        known.filter(|then| *then == Move { from: *from, by }).map(|_| {
+            let normal = self.state.facing[v.index()];
+            Landing { place: self.state.places[v.index()], normal }
+        })
+    }
+
+    /// Notes moves, of seeds that went all the way, before these are done.
+    pub(super) fn note(&mut self, state: &State, moves: impl Iterator<Item = (VertexId, Vector)>) {
+        self.moves.clear();
+        self.moves.resize(state.places.len(), None);
+        for (v, by) in moves {
+            self.moves[v.index()] = Some(Move { from: state.places[v.index()], by });
+        }
+    }
+
+    /// Keeps a state that is taken back; what is left in its place is of no use.
+    pub(super) fn keep(&mut self, state: &mut State) {
+        std::mem::swap(&mut self.state, state);
+        std::mem::swap(&mut self.then, &mut self.moves);
+        self.moves.clear();
+    }
+
+    /// Fills in what is known of seeds that have come to the same places, and of edges between these whose lengths are not known.
+    pub(super) fn recall(&self, state: &mut State) {
+        if self.then.len() != state.places.len() {
+            return;
+        }
+        let is_there = |v: VertexId| {
+            let is_same = self.moves.get(v.index()) == self.then.get(v.index());
+            is_same && self.state.places[v.index()] == state.places[v.index()]
+        };
+        let there: Vec<bool> = (0..self.then.len() as u32).map(|v| is_there(VertexId(v))).collect();
+        for (i, _) in there.iter().enumerate().filter(|(_, is_there)| **is_there) {
+            (state.locals[i], state.measured[i]) = (self.state.locals[i], self.state.measured[i]);
+        }
+        let then = &self.state.topology;
+        state.topology.change_lengths(|ends, length| {
+            if !length.is_nan() || ends.iter().any(|v| !there[v.index()]) {
+                return length;
+            }
+            then.edge_between(ends[0], ends[1]).map_or(length, |h| then.length(h))
+        });
+    }
+}
+
+/// Where a seed comes to lie, and the surface's normal there.
+#[derive(Clone, Copy)]
+pub(super) struct Landing {
+    pub(super) place: Place,
+    pub(super) normal: Vector3,
+}
