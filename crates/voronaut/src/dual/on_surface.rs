@@ -35,7 +35,7 @@ pub(crate) struct SurfaceDual<'a> {
     pub(super) factor: f64,
     pub(super) state: State,
     pub(super) flips: u64,
-    tried: Tried,
+    pub(super) tried: Tried,
 }
 
 /// What moves and flips change. Vertex i of the topology is seed i.

@@ -82,3 +82,47 @@ pub(super) struct Landing {
     pub(super) place: Place,
     pub(super) normal: Vector3,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dual::{Moving, SurfaceDual};
+    use crate::surface::metric::Sizes;
+    use crate::surface::{Input, sphere};
+
+    #[test]
+    fn the_next_try_finds_what_it_would_find_alone_to_the_last_bit() {
+        let input = Input::new(sphere(1.0, 0.4).unwrap(), None);
+        let size = |i: usize| if i % 3 == 0 { 0.25 } else { 0.6 };
+        let metric =
+            Sizes::Isotropic((0..input.surface.positions().len()).map(size).collect()).field(&input.surface).unwrap();
+        let made = || {
+            let topology = input.surface.topology().clone();
+            let places = topology.vertices().map(|v| input.surface.place_of(v).unwrap()).collect();
+            let mut dual = SurfaceDual::new(&input, &metric, 1.0, places, 0, topology).unwrap();
+            dual.flip_all();
+            dual
+        };
+        let step = |dual: &mut SurfaceDual, moves: &[(VertexId, Vector)]| {
+            dual.shift_together(moves);
+            dual.settle_moves().unwrap();
+        };
+        let (mut alone, mut second) = (made(), made());
+        assert!(alone.topology().vertices().any(|v| alone.local(v).is_rough), "lengths take chords");
+        let way = |v: VertexId| Vector::new(f64::from(v.0).cos(), f64::from(v.0).sin()) * 0.08;
+        let all: Vec<(VertexId, Vector)> = second.topology().vertices().map(|v| (v, way(v))).collect();
+        let some: Vec<(VertexId, Vector)> = all.iter().copied().filter(|(v, _)| v.0 % 4 > 0).collect();
+        let before = second.save();
+        step(&mut second, &all);
+        second.take_back(&before);
+        let is_known =
+            |&&(v, by): &&(VertexId, Vector)| second.tried.landing(v, &second.places()[v.index()], by).is_some();
+        assert!(2 * some.iter().filter(is_known).count() > some.len());
+        step(&mut alone, &some);
+        step(&mut second, &some);
+        assert!(alone.places() == second.places() && alone.triangles() == second.triangles());
+        assert!(alone.topology().vertices().all(|v| alone.local(v) == second.local(v)));
+        let length = |dual: &SurfaceDual, h| dual.topology().length(h).to_bits();
+        assert!(alone.topology().edges().all(|h| length(&alone, h) == length(&second, h)));
+    }
+}
