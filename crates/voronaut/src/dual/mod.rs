@@ -17,6 +17,7 @@ mod tried;
 pub(crate) use consult::Consultation;
 pub(crate) use consult::Disagreement;
 pub use consult::Road;
+use moving::Saved;
 pub(crate) use moving::{Moving, sites};
 pub(crate) use on_surface::SurfaceDual;
 
@@ -93,6 +94,8 @@ pub struct Dual<'a> {
     paths: Paths,
     counters: DualCounters,
     fault: Option<(Point, Tensor)>,
+    /// What moves that were taken back had led to.
+    tried: Saved,
 }
 
 impl<'a> Dual<'a> {
@@ -117,6 +120,7 @@ impl<'a> Dual<'a> {
             paths: Paths::default(),
             counters: DualCounters::default(),
             fault: None,
+            tried: Saved::default(),
         };
         dual.measure_all();
         dual.verdict()?;
@@ -256,7 +260,8 @@ impl<'a> Dual<'a> {
         let at_rough = |&h: &HalfEdge| topology.ends(h).into_iter().any(is_rough);
         let measured = |h: HalfEdge| {
             let [from, to] = topology.ends(h).map(|v| self.local(v));
-            (h, chord_between(&self.field, self.planar.ends(h), [from.tensor, to.tensor], from.near))
+            let chord = || chord_between(&self.field, self.planar.ends(h), [from.tensor, to.tensor], from.near);
+            (h, self.recalled_length(topology.ends(h)).unwrap_or_else(chord))
         };
         let faces = (0..topology.face_slots() as u32).into_par_iter().with_min_len(64).map(FaceId);
         let edges = faces.flat_map_iter(|f| topology.edges_of(f).filter(at_rough).map(measured));

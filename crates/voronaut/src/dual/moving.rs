@@ -114,6 +114,35 @@ pub(crate) struct Site {
 }
 
 impl Dual<'_> {
+    /// Takes over the metric at seeds that have come to where moves that were taken back had led them.
+    fn recall(&mut self) {
+        let Self { tried, planar, locals, .. } = self;
+        if tried.factor.to_bits() != self.field.factor.to_bits() {
+            return;
+        }
+        let seeds = locals.iter_mut().zip(&planar.positions).zip(tried.locals.iter().zip(&tried.planar.positions));
+        for ((local, at), (known, then)) in seeds {
+            if local.is_due() && at == then {
+                *local = *known;
+            }
+        }
+    }
+
+    /// The length of an edge in the state that was taken back, between seeds that are where they were then, from the same one to the other: the other way
+    /// rounding differs.
+    pub(super) fn recalled_length(&self, ends: [VertexId; 2]) -> Option<f64> {
+        let Saved { planar, locals, factor, .. } = &self.tried;
+        let is_there = |v: VertexId| {
+            let [then, now] = [locals.get(v.index()), Some(self.local(v))];
+            planar.positions.get(v.index()) == Some(&self.position(v)) && then == now
+        };
+        let is_known = factor.to_bits() == self.field().factor.to_bits() && ends.into_iter().all(is_there);
+        let topology = &planar.topology;
+        let edge = is_known.then(|| topology.edge_between(ends[0], ends[1])).flatten();
+        let edge = edge.map(|h| topology.canonical(h)).filter(|&h| topology.ends(h) == ends);
+        edge.map(|h| topology.length(h)).filter(|length| !length.is_nan())
+    }
+
     fn site_at(&self, at: Point, beside: VertexId) -> Site {
         let tensor = self.field().at_near(at, &mut self.local(beside).near.clone());
         Site { at, tensor, log: tensor.log() }
@@ -191,6 +220,7 @@ impl Moving for Dual<'_> {
     }
 
     fn settle_moves(&mut self) -> Result<u64> {
+        self.recall();
         // Where the metric was rough it counts as rough still.
         self.measure_each(|local, field, p| if local.is_due() { local.moved(field, p) } else { *local });
         self.verdict()?;
@@ -214,6 +244,9 @@ impl Moving for Dual<'_> {
     }
 
     fn take_back(&mut self, saved: &Saved) {
+        std::mem::swap(&mut self.tried.planar, &mut self.planar);
+        std::mem::swap(&mut self.tried.locals, &mut self.locals);
+        self.tried.factor = self.field.factor;
         self.planar.copy_from(&saved.planar);
         copy_over(&mut self.locals, &saved.locals);
         self.kinds.clone_from(&saved.kinds);

@@ -93,7 +93,7 @@ mod tests {
     #[test]
     fn the_next_try_finds_what_it_would_find_alone_to_the_last_bit() {
         let input = Input::new(sphere(1.0, 0.4).unwrap(), None);
-        let size = |i: usize| if i % 3 == 0 { 0.25 } else { 0.6 };
+        let size = |i: usize| if i.is_multiple_of(3) { 0.25 } else { 0.6 };
         let metric =
             Sizes::Isotropic((0..input.surface.positions().len()).map(size).collect()).field(&input.surface).unwrap();
         let made = || {
