@@ -284,3 +284,53 @@ impl Moving for Dual<'_> {
         self.flip_around(v, Effort::Local);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::domain::Domain;
+    use crate::geometry::from_frame;
+    use crate::metric::{Scaled, Swirl};
+    use crate::progress::Silent;
+    use crate::sampling::{Fill, Plan, Target, refine, sample_segments};
+
+    #[test]
+    fn the_next_try_finds_what_it_would_find_alone_to_the_last_bit() {
+        let (domain, field) = (Domain::shape("rect:-2,-2,2,2").unwrap(), Swirl::default());
+        let made = || {
+            let plan = Plan::new(domain.clone(), Vec::new(), &field, Target::Vertices(300)).unwrap();
+            let scaled = Scaled { field: &field, factor: plan.scale_for(300.0) };
+            let mut dual = Dual::new(&domain, scaled).unwrap();
+            sample_segments(&mut dual, &plan.edges, &plan.arcs, scaled.factor, 0);
+            refine(&mut dual, Fill::AtMost(300), &Silent).unwrap();
+            Moving::measure(&mut dual);
+            dual
+        };
+        let step = |dual: &mut Dual, moves: &[(VertexId, Vector)]| {
+            dual.shift_together(moves);
+            dual.settle_moves().unwrap();
+        };
+        let (mut alone, mut second) = (made(), made());
+        let way = |v: VertexId| {
+            let (sine, cosine) = f64::from(v.0).sin_cos();
+            from_frame(second.local(v).tensor.cholesky(), Vector::new(cosine, sine)) * 0.1
+        };
+        let free = second.topology().vertices().filter(|&v| second.kind(v) == Kind::Free);
+        let all: Vec<(VertexId, Vector)> = free.map(|v| (v, way(v))).collect();
+        let some: Vec<(VertexId, Vector)> = all.iter().copied().filter(|(v, _)| v.0 % 16 > 0).collect();
+        let before = second.save();
+        step(&mut second, &all);
+        second.take_back(&before);
+        step(&mut alone, &some);
+        step(&mut second, &some);
+        let topology = alone.topology();
+        let is_known = |&h: &crate::triangulation::HalfEdge| second.recalled_length(topology.ends(h)).is_some();
+        assert!(2 * topology.edges().filter(is_known).count() > topology.edges().count(), "of rough edges next to all");
+        for v in topology.vertices() {
+            assert!(alone.position(v) == second.position(v) && alone.local(v) == second.local(v));
+        }
+        let length = |dual: &Dual, h| dual.topology().length(h).to_bits();
+        assert!(topology.edges().all(|h| topology.ends(h) == second.topology().ends(h)));
+        assert!(topology.edges().all(|h| length(&alone, h) == length(&second, h)));
+    }
+}
