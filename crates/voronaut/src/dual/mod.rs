@@ -12,6 +12,7 @@ mod moving;
 mod on_surface;
 mod surface_flips;
 mod patch;
+mod state;
 mod tried;
 
 pub(crate) use consult::Consultation;

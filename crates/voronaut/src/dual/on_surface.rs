@@ -4,6 +4,7 @@
 //! without doubled edges, and lets no triangle turn away from the surface's normals. What the metric is around a seed, and where its neighbours are, is
 //! told in a chart there (RR-9103, section 12).
 
+use super::state::{Measured, State};
 use super::tried::{Landing, Tried};
 use super::{Kind, Moving, unit_share};
 use crate::elementary::Elementary;
@@ -11,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::geodesic::{LocalMetric, STILL};
 use crate::geometry::{Point, Point3, Seen, TangentPlane, Tensor, Tensor3, Vector, Vector3};
 use crate::metric::Scaled;
-use crate::parallel::{copy_over, prelude::*};
+use crate::parallel::prelude::*;
 use crate::progress::Sketch;
 use crate::surface::metric::SurfaceMetric;
 use crate::surface::{Chart, Input, Place};
@@ -36,39 +37,6 @@ pub(crate) struct SurfaceDual<'a> {
     pub(super) state: State,
     pub(super) flips: u64,
     pub(super) tried: Tried,
-}
-
-/// What moves and flips change. Vertex i of the topology is seed i.
-#[derive(Default)]
-pub(crate) struct State {
-    pub(super) topology: Triangulation,
-    pub(super) places: Vec<Place>,
-    pub(super) planes: Vec<TangentPlane>,
-    /// What the triangles at a seed are to face.
-    pub(super) facing: Vec<Vector3>,
-    pub(super) locals: Vec<LocalMetric>,
-    pub(super) measured: Vec<Measured>,
-    kinds: Vec<Kind>,
-}
-
-impl State {
-    /// Becomes another one, in the memory that this one has.
-    fn copy_from(&mut self, other: &Self) {
-        self.topology.copy_from(&other.topology);
-        copy_over(&mut self.places, &other.places);
-        copy_over(&mut self.planes, &other.planes);
-        copy_over(&mut self.facing, &other.facing);
-        copy_over(&mut self.locals, &other.locals);
-        copy_over(&mut self.measured, &other.measured);
-        copy_over(&mut self.kinds, &other.kinds);
-    }
-}
-
-/// Where the metric of a seed was measured, and what it is there, not scaled.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Measured {
-    at: Point3,
-    pub(super) tensor: Tensor3,
 }
 
 impl<'a> SurfaceDual<'a> {

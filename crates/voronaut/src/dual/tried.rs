@@ -1,6 +1,6 @@
 //! What a step that was taken back has found out about places, which the next try of the same step leads most seeds to again.
 
-use super::on_surface::State;
+use super::state::State;
 use crate::geometry::{Vector, Vector3};
 use crate::surface::Place;
 use crate::triangulation::VertexId;
