@@ -22,6 +22,8 @@ const PERIOD: Duration = Duration::from_millis(20);
 pub(crate) fn begin(limits: Limits) -> Result<()> {
     let start = Instant::now();
     heed_signals()?;
+    // A thread may start late.
+    check(limits, start);
     std::thread::spawn(move || {
         loop {
             check(limits, start);
