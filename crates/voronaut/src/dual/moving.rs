@@ -97,7 +97,7 @@ pub(crate) fn sites<M: Moving>(dual: &M) -> Vec<M::Site> {
 }
 
 /// Of more seeds what was taken back is not kept: a million for a hard shock take 1.39 GB with it, and 1.14 without.
-const KEPT: usize = 1 << 18;
+pub(super) const KEPT: usize = 1 << 18;
 
 /// Seeds, edges and the metric at the seeds, with its factor.
 #[derive(Default)]

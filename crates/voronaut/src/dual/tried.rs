@@ -1,12 +1,14 @@
 //! What a step that was taken back has found out about places, which the next try of the same step leads most seeds to again.
 
+use super::moving::KEPT;
 use super::state::State;
 use crate::geometry::{Vector, Vector3};
 use crate::surface::Place;
 use crate::triangulation::VertexId;
 
 /// The last moves of all seeds at once, and the state that those taken back had led to. The way to a place, the metric there and the length of an edge between two
-/// hang on where seeds were and on the metric's factor alone, so that they need not be found again.
+/// hang on where seeds were and on the metric's factor alone, so that they need not be found again
+/// (an edge that was measured from its other end may be longer or shorter by rounding).
 #[derive(Default)]
 pub(super) struct Tried {
     /// Of seeds that went all the way, by id, from where and by what.
@@ -40,14 +42,20 @@ impl Tried {
     /// Notes moves, of seeds that went all the way, before these are done.
     pub(super) fn note(&mut self, state: &State, moves: impl Iterator<Item = (VertexId, Vector)>) {
         self.moves.clear();
+        if state.places.len() > KEPT {
+            return;
+        }
         self.moves.resize(state.places.len(), None);
         for (v, by) in moves {
             self.moves[v.index()] = Some(Move { from: state.places[v.index()], by });
         }
     }
 
-    /// Keeps a state that is taken back; what is left in its place is of no use.
+    /// Keeps a state that is taken back, if it is not too large; what is left in its place is of no use.
     pub(super) fn keep(&mut self, state: &mut State) {
+        if state.places.len() > KEPT {
+            return;
+        }
         std::mem::swap(&mut self.state, state);
         std::mem::swap(&mut self.then, &mut self.moves);
         self.moves.clear();

@@ -80,7 +80,7 @@ const CUBIC: usize = 10;
 const QUADRATIC: usize = 6;
 /// A polynomial of degree three has so many neighbours to fit, at least.
 const ENOUGH: usize = 14;
-/// Two rings rarely have more vertices.
+/// Two rings of six and twelve, the vertex itself, and room: few lists grow.
 const FEW: usize = 32;
 
 fn fit(surface: &Surface, v: VertexId) -> Option<Curvatures> {
