@@ -4,7 +4,7 @@
 use libfuzzer_sys::arbitrary::{Result, Unstructured};
 use libfuzzer_sys::fuzz_target;
 use voronaut::Error;
-use voronaut::domain::{Domain, Polygon, Polygons, Ring, from_polygons};
+use voronaut::manifold::domain::{Domain, Polygon, Polygons, Ring, from_polygons};
 use voronaut::dual::Road;
 use voronaut::geometry::Point;
 use voronaut::mesh::Mesh;
@@ -12,7 +12,8 @@ use voronaut::metric::{Bounds, MetricSpec};
 use voronaut::progress::Silent;
 use voronaut::quality::{Meetings, validity, validity_on};
 use voronaut::recipe::{self, GradedAt, MeshOptions, MetricOptions, Seeding};
-use voronaut::surface::{FeatureOptions, Input, Surface, metric};
+use voronaut::manifold::Manifold;
+use voronaut::manifold::surface::{FeatureOptions, Surface, metric};
 
 /// What users write as a metric; the letters are replaced by numbers.
 const PLANAR: [&str; 8] = [
@@ -49,7 +50,7 @@ fn surface(bytes: &mut Unstructured) -> Result<()> {
     let mesh = grid(bytes)?;
     let Some(surface) = accepted(Surface::new(&mesh)) else { return Ok(()) };
     let ar = if bytes.arbitrary()? { Some(f64::from(bytes.int_in_range(5..=120)?)) } else { None };
-    let Some(input) = accepted(Input::new(surface, None).cut(&FeatureOptions { ar })) else { return Ok(()) };
+    let Some(input) = accepted(Manifold::new(surface, None).cut(&FeatureOptions { ar })) else { return Ok(()) };
     let options = options(bytes)?;
     let text = numbered(bytes.choose(&ON_SURFACES)?, bytes)?;
     let bounds = bounds(bytes)?;

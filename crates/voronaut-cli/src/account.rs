@@ -4,12 +4,13 @@ use crate::curves;
 use serde_json::Value;
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 use voronaut::figures::NetFigures;
+use voronaut::manifold::Manifold;
+use voronaut::manifold::surface::Mended;
+use voronaut::manifold::surface::metric::{Scaled, SurfaceMetric};
 use voronaut::mesh::Mesh;
 use voronaut::metric::MetricField;
 use voronaut::quality::{Unmet, metric_quality, surface_quality, surface_unmet, unmet};
 use voronaut::recipe::Meshed;
-use voronaut::surface::metric::{Scaled, SurfaceMetric};
-use voronaut::surface::{Input, Mended, Surface};
 use voronaut::{Error, Result};
 use voronaut_io::{ClosedForm, Report, Seconds, Strayed};
 
@@ -43,7 +44,7 @@ pub(crate) fn in_plane(
 /// not of unit length. Neither is measured where nobody is told.
 pub(crate) fn on_surface(
     meshed: &Meshed,
-    input: &Input,
+    input: &Manifold,
     mended: &Mended,
     metric: &dyn SurfaceMetric,
     options: Value,
@@ -53,7 +54,7 @@ pub(crate) fn on_surface(
     let scaled = Scaled { field: metric, factor: meshed.metric_scale };
     let (mut report, mut unmet) = (report(meshed, options), Unmet::default());
     if is_told {
-        unmet = measure_on_surface(&mut report, &meshed.mesh, &input.surface, &scaled)?;
+        unmet = measure_on_surface(&mut report, &meshed.mesh, input, &scaled)?;
         report.closed_form = closed_form(meshed, &unmet);
     }
     report.notes.extend(mended.sentences().chain(meets));
@@ -86,7 +87,7 @@ pub(crate) fn measure_in_plane(report: &mut Report, mesh: &Mesh, metric: &dyn Me
 pub(crate) fn measure_on_surface(
     report: &mut Report,
     mesh: &Mesh,
-    surface: &Surface,
+    surface: &Manifold,
     metric: &Scaled,
 ) -> Result<Unmet> {
     report.curvature = metric.field.curvature_figures();

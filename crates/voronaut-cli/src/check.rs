@@ -7,15 +7,16 @@ use crate::{account, curves, files, pictures};
 use clap::Args;
 use serde_json::json;
 use std::path::PathBuf;
-use voronaut::domain::{Domain, from_mesh};
+use voronaut::manifold::Manifold;
+use voronaut::manifold::domain::{Domain, from_mesh};
+use voronaut::manifold::surface::Mended;
+use voronaut::manifold::surface::metric::Scaled;
 use voronaut::mesh::Mesh;
 use voronaut::metric::{Expression, MetricField, Snapshot, Variables};
 use voronaut::quality::{
     Meetings, Unmet, fidelity, interpolation_error, interpolation_error_on, surface_fidelity, validity, validity_on,
 };
 use voronaut::recipe::GradedAt;
-use voronaut::surface::metric::Scaled;
-use voronaut::surface::{Implicit, Input, Mended, Surface};
 use voronaut::{Error, Result};
 use voronaut_draw::Layers;
 use voronaut_io::{Document, Given, Report, Strayed};
@@ -170,15 +171,14 @@ fn on_surface(
     args: &CheckArgs,
     world: &World,
     mesh: &Mesh,
-    given: Option<Input>,
+    given: Option<Manifold>,
     report: &mut Report,
 ) -> Result<Option<String>> {
     demand_for_surfaces(args, world)?;
     report.options["ar"] = json!(args.creases.options().ar);
     let given = given.map(|whole| whole.cut(&args.creases.options())).transpose()?;
-    if let Some(Input { surface, implicit, .. }) = &given {
-        let implicit = implicit.as_ref().map(|f| f as &dyn Implicit);
-        report.fidelity = Some(Strayed::Surface(surface_fidelity(mesh, surface, implicit)?.into()));
+    if let Some(input) = &given {
+        report.fidelity = Some(Strayed::Surface(surface_fidelity(mesh, input)?.into()));
     }
     let drawn = |unmet: &Unmet| pictures::of_surface_mesh(&args.outputs, mesh, unmet);
     let picture = |unmet: &Unmet| args.outputs.picture.as_ref().map(|_| drawn(unmet)).transpose();
@@ -187,7 +187,7 @@ fn on_surface(
     let input = if let Some(input) = &given {
         input
     } else if args.metric.is_some() || args.function.is_some() {
-        own = Input::new(Surface::new(mesh)?, None).cut(&args.creases.options())?;
+        own = Manifold::of(mesh)?.cut(&args.creases.options())?;
         &own
     } else {
         return picture(&Unmet::default());
@@ -200,7 +200,7 @@ fn on_surface(
         let factor = args.metric_scale.unwrap_or(1.0);
         let field = fields::on_surface(world, text, input, &args.metric_choices, GradedAt::Scale(factor))?;
         let scaled = Scaled { field: field.as_ref(), factor };
-        unmet = account::measure_on_surface(report, mesh, &input.surface, &scaled)?;
+        unmet = account::measure_on_surface(report, mesh, input, &scaled)?;
         report.histograms = files::histograms_on(&args.outputs, mesh, input, &scaled)?;
     }
     picture(&unmet)

@@ -6,7 +6,7 @@ use crate::summary;
 use crate::{curves, files};
 use clap::Args;
 use std::path::{Path, PathBuf};
-use voronaut::domain::{Pslg, from_mesh, to_mesh, to_poly, to_polygons};
+use voronaut::manifold::domain::{Pslg, from_mesh, to_mesh, to_poly, to_polygons};
 use voronaut::mesh::Mesh;
 use voronaut::{Error, Result};
 use voronaut_io::gmsh::Version;

@@ -9,12 +9,13 @@ use serde_json::{Value, json};
 use std::path::PathBuf;
 use voronaut::canvas::{self, BYTES_PER_VERTEX, Canvas, CanvasFigures, Way};
 use voronaut::diagram::{Distances, Ground, SurfaceDistances};
-use voronaut::domain::Domain;
 use voronaut::geodesic::{Method, Polyline};
 use voronaut::geometry::{Aabb3, Point, Point3};
+use voronaut::manifold::domain::Domain;
+use voronaut::manifold::surface::Mended;
+use voronaut::manifold::{Manifold, Place};
 use voronaut::mesh::Mesh;
 use voronaut::recipe::GradedAt;
-use voronaut::surface::{Input, Mended, Place};
 use voronaut::triangulation::VertexId;
 use voronaut::{Error, Result};
 use voronaut_draw::{Layers, Picture, Scene, Stroke, View};
@@ -95,7 +96,7 @@ fn in_plane(args: &DistanceArgs, world: &World, domain: &Domain, mended: &Mended
     let at = GradedAt::Scale(1.0);
     let metric = fields::in_plane(world, &args.metric, domain, &args.domain, &args.metric_choices, at)?.field;
     stages.end("read");
-    let canvas = Canvas::new(args.canvas, domain, metric.as_ref(), args.canvas_size as usize)?;
+    let canvas = Canvas::new(args.canvas, domain.planar(), metric.as_ref(), args.canvas_size as usize)?;
     demand_inside(&from, to, &canvas)?;
     stages.end("canvas");
     let found = Distances::new(&canvas, metric.as_ref(), &from, args.geodesic)?;
@@ -113,7 +114,7 @@ fn in_plane(args: &DistanceArgs, world: &World, domain: &Domain, mended: &Mended
 }
 
 /// The distances on a canvas that has the points, moved onto the surface, as vertices.
-fn on_surface(args: &DistanceArgs, world: &World, input: &Input, mended: &Mended, mut stages: Stages) -> Result<()> {
+fn on_surface(args: &DistanceArgs, world: &World, input: &Manifold, mended: &Mended, mut stages: Stages) -> Result<()> {
     let mut places: Vec<Place> = Vec::new();
     let from = args.from.iter().map(|p| Ok(add(on_it("--from", p, input)?, &mut places)));
     let from: Vec<usize> = from.collect::<Result<_>>()?;
@@ -170,7 +171,7 @@ fn flat(name: &str, p: &Coordinates) -> Result<Point> {
 }
 
 /// The place of the surface that is meant.
-fn on_it(name: &str, p: &Coordinates, input: &Input) -> Result<Place> {
+fn on_it(name: &str, p: &Coordinates, input: &Manifold) -> Result<Place> {
     match *p {
         Coordinates::Space(p) => input.closest(p).map_err(|error| match error {
             Error::Domain { what, help, .. } => Error::domain(what, format!("{name} {p}"), help),

@@ -11,11 +11,13 @@ use std::path::PathBuf;
 use voronaut::canvas::{self, Canvas};
 use voronaut::certificate::{Certificate, Constants};
 use voronaut::diagram::{self, Diagram, Ground, Kind, RESOLVE_ROUNDS, SurfaceDiagram, resolve};
-use voronaut::domain::Domain;
 use voronaut::dual::Road;
 use voronaut::figures;
 use voronaut::geodesic::Method;
 use voronaut::geometry::Point;
+use voronaut::manifold::Manifold;
+use voronaut::manifold::domain::Domain;
+use voronaut::manifold::surface::Mended;
 use voronaut::mesh::Mesh;
 use voronaut::metric::MetricField;
 use voronaut::quality::{
@@ -24,7 +26,6 @@ use voronaut::quality::{
 use voronaut::realisation::Realisation;
 use voronaut::recipe::{self, GradedAt, MeshOptions, SeedDual};
 use voronaut::sampling;
-use voronaut::surface::{Input, Mended};
 use voronaut::{Error, Result};
 use voronaut_draw::Layers;
 use voronaut_io::{Given, Report};
@@ -152,7 +153,7 @@ fn in_plane(args: &DualArgs, world: &World, domain: &Domain, mended: &Mended, mu
     stages.end("diagram");
     let SeedDual { triangles, nerve, mut account, seconds, exact, raw_nerve } =
         recipe::dual(&diagram, metric, args.dual, &*world.progress(&args.run));
-    let mesh = diagram.to_mesh(triangles, &nerve, domain);
+    let mesh = diagram.to_mesh(triangles, &nerve, &domain.pslg().segments);
     account.crossing_edges = Some(crossing_edges(&mesh).len());
     stages.end("dual");
     let is_curved = args.edges == EdgesOut::Geodesic || outputs.have_geodesics() || args.paged.cells;
@@ -206,7 +207,7 @@ fn in_plane(args: &DualArgs, world: &World, domain: &Domain, mended: &Mended, mu
 }
 
 /// The dual of seeds on a surface.
-fn on_surface(args: &DualArgs, world: &World, input: &Input, mended: &Mended, mut stages: Stages) -> Result<()> {
+fn on_surface(args: &DualArgs, world: &World, input: &Manifold, mended: &Mended, mut stages: Stages) -> Result<()> {
     let is_riemannian = args.voronoi == Kind::Riemannian;
     pictures::demand_of_surfaces(&args.outputs)?;
     let metric = fields::on_surface(world, &args.metric, input, &args.metric_choices, GradedAt::Scale(1.0))?;
@@ -228,7 +229,7 @@ fn on_surface(args: &DualArgs, world: &World, input: &Input, mended: &Mended, mu
     stages.end("dual");
     let found = validity_on(&mesh, &Meetings::of(input.whole_mesh()));
     let meets = found.meetings.note();
-    let mut report = reported(args, &mesh, found, || surface_quality(&mesh, &input.surface, metric))?;
+    let mut report = reported(args, &mesh, found, || surface_quality(&mesh, input, metric))?;
     let is_curved = args.edges == EdgesOut::Geodesic || args.outputs.have_geodesics() || args.paged.cells;
     let curved = is_curved.then(|| Realisation::on_surface(&diagram, &mesh.triangles));
     account.geodesics = curved.as_ref().map(figures::Geodesics::of);
@@ -312,10 +313,17 @@ fn canvas_vertices(args: &DualArgs, seeds: usize) -> Result<Option<usize>> {
 fn canvas(args: &DualArgs, domain: &Domain, metric: &dyn MetricField, file: &SeedFile<Point>) -> Result<Canvas> {
     let seeds = &file.seeds;
     let size = canvas_vertices(args, seeds.len())?;
-    let canvas = Canvas::new(args.canvas, domain, metric, size.unwrap_or_default())?;
+    let canvas = Canvas::new(args.canvas, domain.planar(), metric, size.unwrap_or_default())?;
     file.demand_inside(&canvas)?;
     if size.is_none() {
-        return recipe::certified_canvas(args.canvas, domain, metric, seeds, args.constants, args.run.limits.memory());
+        return recipe::certified_canvas(
+            args.canvas,
+            domain.planar(),
+            metric,
+            seeds,
+            args.constants,
+            args.run.limits.memory(),
+        );
     }
     if args.voronoi == Kind::Riemannian && args.dual == Road::Canvas {
         return Ok(resolve(canvas, metric, seeds, RESOLVE_ROUNDS)?.canvas);

@@ -3,12 +3,12 @@
 use crate::options::{MetricChoices, refuse};
 use crate::world::World;
 use voronaut::Result;
-use voronaut::domain::Domain;
 use voronaut::geometry::Point;
+use voronaut::manifold::Manifold;
+use voronaut::manifold::domain::Domain;
+use voronaut::manifold::surface::metric::SurfaceMetric;
 use voronaut::metric::MetricField;
 use voronaut::recipe::{GradedAt, Idle, PlanarMetric, Task};
-use voronaut::surface::Input;
-use voronaut::surface::metric::SurfaceMetric;
 use voronaut_io::metric_origin;
 
 /// What a metric is for.
@@ -47,7 +47,7 @@ pub(crate) fn measuring(
 pub(crate) fn on_surface(
     world: &World,
     text: &str,
-    input: &Input,
+    input: &Manifold,
     choices: &MetricChoices,
     at: GradedAt,
 ) -> Result<Box<dyn SurfaceMetric>> {

@@ -4,11 +4,11 @@ use crate::options::{Outputs, Run};
 use crate::summary;
 use crate::world::World;
 use std::path::Path;
+use voronaut::manifold::Manifold;
+use voronaut::manifold::surface::metric::SurfaceMetric;
 use voronaut::mesh::{Mesh, SolutionValues, Solutions};
 use voronaut::metric::MetricField;
 use voronaut::quality::{self, Histograms};
-use voronaut::surface::Input;
-use voronaut::surface::metric::SurfaceMetric;
 use voronaut::{Error, Result};
 use voronaut_io::{Fields, Format, Report, ending};
 
@@ -102,7 +102,7 @@ pub(crate) fn histograms(outputs: &Outputs, mesh: &Mesh, metric: &dyn MetricFiel
 pub(crate) fn histograms_on(
     outputs: &Outputs,
     mesh: &Mesh,
-    input: &Input,
+    input: &Manifold,
     metric: &dyn SurfaceMetric,
 ) -> Result<Option<Histograms>> {
     outputs.histograms.is_some().then(|| quality::histograms_on(mesh, input, metric)).transpose()

@@ -15,10 +15,13 @@ use std::path::PathBuf;
 use voronaut::Result;
 use voronaut::canvas::{self, Canvas};
 use voronaut::diagram::{Diagram, Kind, SurfaceDiagram};
-use voronaut::domain::Domain;
 use voronaut::dual::Road;
 use voronaut::geodesic::Method;
 use voronaut::geometry::Point;
+use voronaut::manifold::Manifold;
+use voronaut::manifold::domain::Domain;
+use voronaut::manifold::surface::Mended;
+use voronaut::manifold::surface::metric::{Finer, Scaled, Spec};
 use voronaut::mesh::Mesh;
 use voronaut::metric::{Expression, MetricField};
 use voronaut::quality::{InterpolationError, Unmet, interpolation_error, interpolation_error_on};
@@ -26,8 +29,6 @@ use voronaut::realisation::Realisation;
 use voronaut::recipe::{
     self, Aim, Boundary, Centroid, Effort, GradedAt, Idle, MeshOptions, Meshed, Mesher, Seeding, Task,
 };
-use voronaut::surface::metric::{Finer, Scaled, Spec};
-use voronaut::surface::{Input, Mended};
 use voronaut_draw::{Layers, Sheet};
 use voronaut_io::{Format, Given, Report};
 
@@ -311,19 +312,19 @@ fn cells(args: &MeshArgs, domain: &Domain, mesh: &Mesh, metric: &dyn MetricField
     }
     let seeds: Vec<Point> = mesh.points.iter().map(|p| Point::new(p[0], p[1])).collect();
     let size = (args.canvas_size as usize).saturating_mul(seeds.len());
-    let canvas = Canvas::new(args.canvas, domain, metric, size)?;
+    let canvas = Canvas::new(args.canvas, domain.planar(), metric, size)?;
     let diagram = Diagram::new(&canvas, metric, &seeds)?;
     let curved = args.outputs.have_geodesics().then(|| Realisation::new(&diagram, metric, &mesh.triangles));
     Ok(pictures::layers(&args.outputs, &diagram, metric, curved.as_ref()))
 }
 
-fn on_surface(args: &MeshArgs, world: &World, input: Input, mended: &Mended, start: f64) -> Result<()> {
+fn on_surface(args: &MeshArgs, world: &World, input: Manifold, mended: &Mended, start: f64) -> Result<()> {
     let required = "leave out --required: it is for planar domains; list required edges in the surface's file";
     refuse([(args.required, "--required on a surface", required)])?;
     pictures::demand_of_surfaces(&args.outputs)?;
     let idle = args.idle(true, world)?;
     let is_whole = args.outputs.picture.is_some() || args.drawn().is_some();
-    let whole = is_whole.then(|| Input::new(input.surface.clone(), input.implicit.clone()));
+    let whole = is_whole.then(|| Manifold::new(input.surface().clone(), input.equation().cloned()));
     let input = &input.cut(&args.creases.options())?;
     let at = GradedAt::of(args.options().vertices, args.complexity);
     let metric = fields::on_surface(world, &args.metric, input, &args.metric_choices, at)?;
@@ -342,7 +343,7 @@ fn on_surface(args: &MeshArgs, world: &World, input: Input, mended: &Mended, sta
         Some(_) => args.in_parts.all(world, &args.run, field, &options, &used)?,
         None => recipe::mesh_surface(input, metric.as_ref(), aim, &options, &*world.progress(&args.run))?,
     };
-    let made_for = Finer { field: metric.as_ref(), surface: &input.surface, logs: &meshed.finer };
+    let made_for = Finer { field: metric.as_ref(), surface: input.surface(), logs: &meshed.finer };
     let is_told = world.tells(&args.run) || args.outputs.picture.is_some();
     let (mut report, unmet) = account::on_surface(&meshed, input, mended, &made_for, used, is_told)?;
     if args.in_parts.parts.is_some() {
@@ -374,7 +375,7 @@ fn aimed(args: &MeshArgs) -> Option<Expression> {
 }
 
 /// The error of interpolation of the function that the mesh is for, if that is a formula.
-fn interpolated(args: &MeshArgs, input: &Input, mesh: &Mesh) -> Result<Option<InterpolationError>> {
+fn interpolated(args: &MeshArgs, input: &Manifold, mesh: &Mesh) -> Result<Option<InterpolationError>> {
     let Ok(Spec::Hessian(function)) = Spec::parse(&args.metric) else { return Ok(None) };
     interpolation_error_on(mesh, input, &function, args.metric_choices.norm).map(Some)
 }
@@ -394,7 +395,7 @@ fn finish(
 }
 
 /// The mesh of a surface that is whole: cells are drawn across creases.
-fn drawn_on(args: &MeshArgs, world: &World, whole: &Input, meshed: &Meshed, unmet: &Unmet) -> Result<String> {
+fn drawn_on(args: &MeshArgs, world: &World, whole: &Manifold, meshed: &Meshed, unmet: &Unmet) -> Result<String> {
     if !pictures::need_diagram_on_surface(&args.outputs) {
         return pictures::of_surface_mesh(&args.outputs, &meshed.mesh, unmet);
     }

@@ -6,15 +6,15 @@ use std::path::Path;
 use voronaut::Result;
 use voronaut::canvas::{self, Canvas};
 use voronaut::diagram::{Diagram, Ground, Kind, SurfaceDiagram};
-use voronaut::domain::Domain;
 use voronaut::geodesic::Method;
 use voronaut::geometry::{Point, Point3};
+use voronaut::manifold::Manifold;
+use voronaut::manifold::domain::Domain;
+use voronaut::manifold::surface::metric::SurfaceMetric;
 use voronaut::mesh::{Mesh, SolutionValues};
 use voronaut::metric::MetricField;
 use voronaut::quality::{Unmet, surface_unmet, unmet};
 use voronaut::realisation::Realisation;
-use voronaut::surface::Input;
-use voronaut::surface::metric::SurfaceMetric;
 use voronaut_draw::Sheet;
 use voronaut_io::{Field, Fields};
 
@@ -79,14 +79,14 @@ pub(crate) fn measured_in_plane(sheet: &mut Sheet, metric: &dyn MetricField, is_
 /// Adds a metric, and what the mesh of a surface is in it, if it is a mesh; far from the surface there is none.
 pub(crate) fn measured_on_surface(
     sheet: &mut Sheet,
-    input: &Input,
+    input: &Manifold,
     metric: &dyn SurfaceMetric,
     is_valid: bool,
 ) -> Result<()> {
     let tensor = |&p: &[f64; 3]| input.closest(p.into()).map_or([f64::NAN; 6], |place| metric.at(&place).to_disk());
     sheet.tensors = sheet.mesh.points.iter().map(tensor).collect();
     if is_valid {
-        judged(sheet, |mesh, see| surface_unmet(mesh, &input.surface, metric, see))?;
+        judged(sheet, |mesh, see| surface_unmet(mesh, input, metric, see))?;
     }
     Ok(())
 }
@@ -106,7 +106,7 @@ fn judged(sheet: &mut Sheet, judge: impl FnOnce(&Mesh, &mut dyn FnMut([f64; 2]))
 /// Adds the cells of a planar mesh's vertices, distances, and its edges as geodesics.
 pub(crate) fn with_cells(sheet: &mut Sheet, domain: &Domain, metric: &dyn MetricField, drawn: Drawn) -> Result<()> {
     let seeds: Vec<Point> = sheet.mesh.points.iter().map(|p| Point::new(p[0], p[1])).collect();
-    let canvas = Canvas::new(drawn.kind, domain, metric, (drawn.size as usize).saturating_mul(seeds.len()))?;
+    let canvas = Canvas::new(drawn.kind, domain.planar(), metric, (drawn.size as usize).saturating_mul(seeds.len()))?;
     let diagram = Diagram::new(&canvas, metric, &seeds)?;
     let curved = Realisation::new(&diagram, metric, &sheet.mesh.triangles);
     show_diagram(sheet, &diagram, &curved);
@@ -125,7 +125,12 @@ pub(crate) fn show_diagram<'a, G: Ground<'a>, P: Copy + Into<[f64; 3]>>(
 }
 
 /// Adds the cells of the vertices of the mesh of a surface that is whole, distances, and its edges as geodesics.
-pub(crate) fn with_cells_on(sheet: &mut Sheet, whole: &Input, metric: &dyn SurfaceMetric, drawn: Drawn) -> Result<()> {
+pub(crate) fn with_cells_on(
+    sheet: &mut Sheet,
+    whole: &Manifold,
+    metric: &dyn SurfaceMetric,
+    drawn: Drawn,
+) -> Result<()> {
     let places = sheet.mesh.points.iter().map(|&p| whole.closest(p.into())).collect::<Result<Vec<_>>>()?;
     let size = canvas::size_for(places.len(), drawn.size);
     let (canvas, at) = Canvas::on_surface(drawn.kind, whole, metric, size, &places)?;

@@ -13,16 +13,16 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
-use voronaut::domain::Domain;
 use voronaut::geometry::{Aabb, Aabb3};
+use voronaut::manifold::Manifold;
+use voronaut::manifold::domain::Domain;
+use voronaut::manifold::surface::metric::SurfaceMetric;
 use voronaut::mesh::{Mesh, Solution, SolutionValues};
 use voronaut::metric::{Expression, MetricField, Norm, Uniform};
 use voronaut::progress::Progress;
 use voronaut::recipe::{
     Aim, MeshOptions, Meshed, Part, mesh_in_parts, mesh_part, mesh_surface_in_parts, mesh_surface_part,
 };
-use voronaut::surface::Input;
-use voronaut::surface::metric::SurfaceMetric;
 use voronaut::{Error, Result};
 use voronaut_io::{Fields, Format, Scratch};
 
@@ -81,7 +81,7 @@ pub(crate) enum Field<'a> {
     /// Of the plane, and what the metric is for.
     Plane(&'a Domain, &'a dyn MetricField, Option<Aim<'a>>),
     /// Of a surface, and the function that the metric is for.
-    Surface(&'a Input, &'a dyn SurfaceMetric, Option<(&'a Expression, Norm)>),
+    Surface(&'a Manifold, &'a dyn SurfaceMetric, Option<(&'a Expression, Norm)>),
 }
 
 /// What is done with the meshes of a round, one after the other.

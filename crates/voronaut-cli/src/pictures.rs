@@ -3,12 +3,12 @@
 use crate::options::{Outputs, Show, refuse};
 use voronaut::diagram::{Diagram, SurfaceDiagram};
 use voronaut::geometry::{Aabb3, Point3};
+use voronaut::manifold::Manifold;
 use voronaut::mesh::{Edges, Mesh};
 use voronaut::metric::MetricField;
 use voronaut::net::Net;
 use voronaut::quality::Unmet;
 use voronaut::realisation::{Grid, Realisation};
-use voronaut::surface::Input;
 use voronaut::triangulation::VertexId;
 use voronaut::{Error, Result};
 use voronaut_draw::{Layers, Picture, Protection, Scene, Stroke, View};
@@ -100,12 +100,12 @@ pub(crate) fn on_surface(
         let edges = Edges::of(&mesh.triangles);
         scene = scene.with(edges.ends().map(|ends| ends.map(|v| mesh.position(v)).to_vec()), Stroke::Edge);
     }
-    let view = View { pixels: outputs.pixels, ..View::of(diagram.canvas().draped().input().surface.bounds()) };
+    let view = View { pixels: outputs.pixels, ..View::of(diagram.canvas().draped().input().bounds()) };
     voronaut_draw::draw_surface(&scene, &view)
 }
 
 /// A line with more points, all on the surface, so that none of it is hidden.
-fn along(input: &Input, line: &[Point3]) -> Vec<Point3> {
+fn along(input: &Manifold, line: &[Point3]) -> Vec<Point3> {
     let between = |ends: &[Point3]| {
         let [p, q] = [ends[0], ends[1]];
         (0..POINTS).map(move |k| p.lerp(q, k as f64 / POINTS as f64))

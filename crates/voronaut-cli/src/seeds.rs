@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use voronaut::canvas::Canvas;
 use voronaut::geometry::{Point, Point3};
-use voronaut::surface::{Input, Place};
+use voronaut::manifold::{Manifold, Place};
 use voronaut::{Error, Result};
 
 /// Seeds as they are given, and where each is, for messages: its line in a file, or its row in an array.
@@ -45,7 +45,7 @@ impl SeedFile<Point3> {
     }
 
     /// The places of the seeds on a surface.
-    pub(crate) fn on_surface(&self, input: &Input) -> Result<Vec<Place>> {
+    pub(crate) fn on_surface(&self, input: &Manifold) -> Result<Vec<Place>> {
         let place = |(i, &p): (usize, &Point3)| {
             input.closest(p).map_err(|error| {
                 let what = format!("the seed {p} is off the surface");

@@ -11,10 +11,10 @@ use serde_json::json;
 use std::path::{Path, PathBuf};
 use voronaut::canvas;
 use voronaut::canvas::VERTICES_PER_SEED;
-use voronaut::domain::{Domain, from_mesh};
+use voronaut::manifold::Manifold;
+use voronaut::manifold::domain::{Domain, from_mesh};
+use voronaut::manifold::surface::metric::Scaled;
 use voronaut::recipe::GradedAt;
-use voronaut::surface::metric::Scaled;
-use voronaut::surface::{Input, Surface};
 use voronaut::{Error, Result};
 use voronaut_draw::Sheet;
 use voronaut_io::{Document, Given};
@@ -134,7 +134,7 @@ fn sheet(args: &ViewArgs, world: &World, path: &Path) -> Result<Sheet> {
             in_plane(args, world, &mut sheet, text, path, &domain)?;
         }
         None => {
-            let input = Input::new(Surface::new(&sheet.mesh)?, None);
+            let input = Manifold::of(&sheet.mesh)?;
             on_surface(args, world, &mut sheet, text, input)?;
         }
     }
@@ -162,9 +162,10 @@ fn in_plane(args: &ViewArgs, world: &World, sheet: &mut Sheet, text: &str, path:
 }
 
 /// Figures are of the surface cut along its creases, cells are drawn across them.
-fn on_surface(args: &ViewArgs, world: &World, sheet: &mut Sheet, text: &str, whole: Input) -> Result<()> {
+fn on_surface(args: &ViewArgs, world: &World, sheet: &mut Sheet, text: &str, whole: Manifold) -> Result<()> {
     let factor = args.metric_scale.unwrap_or(1.0);
-    let field = |input: &Input| fields::on_surface(world, text, input, &args.metric_choices, GradedAt::Scale(factor));
+    let field =
+        |input: &Manifold| fields::on_surface(world, text, input, &args.metric_choices, GradedAt::Scale(factor));
     if let Some(drawn) = args.drawn() {
         pages::with_cells_on(sheet, &whole, &Scaled { field: field(&whole)?.as_ref(), factor }, drawn)?;
     }

@@ -10,14 +10,15 @@ use std::ffi::OsString;
 use std::path::Path;
 use std::sync::Mutex;
 use std::time::Instant;
-use voronaut::domain::{Domain, Pslg, from_polygons, repaired_graph, repaired_polygons};
 use voronaut::geometry::Tensor;
+use voronaut::manifold::Manifold;
+use voronaut::manifold::domain::{Domain, Pslg, from_polygons, repaired_graph, repaired_polygons};
+use voronaut::manifold::surface::metric::SurfaceMetric;
+use voronaut::manifold::surface::{Mended, RepairOptions};
 use voronaut::mesh::{Mesh, Solution, SolutionValues, Solutions};
 use voronaut::progress::Progress;
 use voronaut::realisation::Realisation;
 use voronaut::recipe::{self, GradedAt, MetricOptions, Origin, Part, PlanarMetric};
-use voronaut::surface::metric::SurfaceMetric;
-use voronaut::surface::{Input, Mended, RepairOptions};
 use voronaut::{Error, Result};
 use voronaut_io::{
     Document, Fields, Format, Given, MetricFiles, MetricSource, geojson, points, read_metric, read_text, surface_metric,
@@ -36,7 +37,7 @@ pub trait HeldMetric: Send {
     ///
     /// # Errors
     /// It is none there.
-    fn on_surface(&self, input: &Input, options: &MetricOptions, at: GradedAt) -> Result<Box<dyn SurfaceMetric>>;
+    fn on_surface(&self, input: &Manifold, options: &MetricOptions, at: GradedAt) -> Result<Box<dyn SurfaceMetric>>;
 }
 
 /// Makes the meshes of parts, in their order; the name is that of the round.
@@ -235,8 +236,10 @@ impl<'a> World<'a> {
             (MetricSource::File(path) | MetricSource::Hessian(path), Some(Document { mesh, .. })) => {
                 let values = read_metric(path, choices.tensor_order)?.values;
                 match source {
-                    MetricSource::File(_) => recipe::metric_of_values(mesh, &values, word, domain, &options, at),
-                    _ => recipe::metric_of_solution(mesh, &values, domain, &options, at),
+                    MetricSource::File(_) => {
+                        recipe::metric_of_values(mesh, &values, word, domain.planar(), &options, at)
+                    }
+                    _ => recipe::metric_of_solution(mesh, &values, domain.planar(), &options, at),
                 }
             }
             _ => MetricFiles { own: Some(own), background, order: choices.tensor_order }
@@ -247,7 +250,7 @@ impl<'a> World<'a> {
     pub(crate) fn surface_metric(
         &self,
         word: &str,
-        input: &Input,
+        input: &Manifold,
         choices: &MetricChoices,
         at: GradedAt,
     ) -> Result<Box<dyn SurfaceMetric>> {

@@ -1,8 +1,8 @@
 //! Every command of ours in docs/coming-from.md runs.
 
 use crate::common::{Place, stderr};
+use voronaut::manifold::surface::torus;
 use voronaut::mesh::Mesh;
-use voronaut::surface::torus;
 use voronaut_io::write_mesh;
 
 /// The files that the page speaks of.

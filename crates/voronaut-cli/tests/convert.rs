@@ -1,7 +1,7 @@
 //! `convert`: from every format to every other, and what goes along.
 
 use crate::common::{Place, stderr};
-use voronaut::domain::Domain;
+use voronaut::manifold::domain::Domain;
 use voronaut::mesh::{Mesh, SolutionValues};
 use voronaut_io::read_pslg;
 

@@ -2,8 +2,8 @@
 
 use crate::common::{Place, stderr};
 use serde_json::Value;
+use voronaut::manifold::surface::torus;
 use voronaut::mesh::{Mesh, SolutionValues};
-use voronaut::surface::torus;
 use voronaut_io::{medit, sol, write_mesh};
 
 /// A directory with a torus of radii 2 and 0.7 in `ring.mesh`.

@@ -2,8 +2,9 @@
 
 use crate::common::{Place, stderr};
 use serde_json::Value;
+use voronaut::manifold::Manifold;
+use voronaut::manifold::surface::torus;
 use voronaut::mesh::Mesh;
-use voronaut::surface::{Input, torus};
 use voronaut_io::write_mesh;
 
 fn put(place: &Place, name: &str, mesh: &Mesh) {
@@ -39,7 +40,7 @@ fn number(report: &Value, path: &str) -> f64 {
 }
 
 fn sphere(radius: f64, edge: f64) -> Mesh {
-    Input::shape(&format!("sphere:{radius}"), Some(edge)).unwrap().surface.to_mesh()
+    Manifold::shape(&format!("sphere:{radius}"), Some(edge)).unwrap().surface().to_mesh()
 }
 
 #[test]

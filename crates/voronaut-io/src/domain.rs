@@ -3,10 +3,10 @@
 use super::files::{ending, in_file, neither};
 use super::{Format, geojson, open, poly, read, read_text};
 use std::path::Path;
-use voronaut::domain::{
+use voronaut::manifold::domain::{
     self, Domain, Polygons, Pslg, from_mesh, from_poly, from_polygons, repaired_graph, repaired_polygons,
 };
-use voronaut::surface::RepairOptions;
+use voronaut::manifold::surface::RepairOptions;
 use voronaut::{Error, Result};
 
 /// Reads and validates a domain.

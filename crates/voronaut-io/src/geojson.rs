@@ -3,8 +3,8 @@
 use super::codec::Shortest;
 use ::geojson::{Feature, GeoJson, Geometry, GeometryValue, Position};
 use std::io::{self, Write};
-use voronaut::domain::{Polygon, Polygons, Ring};
 use voronaut::geometry::Point;
+use voronaut::manifold::domain::{Polygon, Polygons, Ring};
 use voronaut::{Error, Result};
 
 /// Reads all polygons of a `FeatureCollection`, `Feature` or geometry; features without geometry are passed over.

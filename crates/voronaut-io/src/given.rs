@@ -4,8 +4,9 @@ use super::files::{ending, in_file, neither};
 use super::{DOMAINS, Document, Format, as_outline, read, read_outline};
 use std::path::Path;
 use voronaut::Result;
-use voronaut::domain::{Domain, Pslg, from_mesh};
-use voronaut::surface::{self, Input, Mended, RepairOptions, Surface, repaired};
+use voronaut::manifold::Manifold;
+use voronaut::manifold::domain::{Domain, Pslg, from_mesh};
+use voronaut::manifold::surface::{self, Mended, RepairOptions, Surface, repaired};
 
 /// A domain: of the plane, or a surface in space.
 #[derive(Debug)]
@@ -13,7 +14,7 @@ pub enum Given {
     /// A planar domain.
     Plane(Domain),
     /// A surface.
-    Surface(Input),
+    Surface(Manifold),
 }
 
 impl Given {
@@ -56,7 +57,7 @@ impl Given {
             return plane(outline.map_err(|error| in_file(name, error))?, &document.notes);
         }
         let (surface, mended) = surface_of(name, document, options)?;
-        Ok((Self::Surface(Input::new(surface, None)), mended))
+        Ok((Self::Surface(Manifold::new(surface, None)), mended))
     }
 }
 
@@ -73,7 +74,7 @@ fn plane((outline, mended): (Pslg, Vec<String>), notes: &[String]) -> Result<(Gi
 /// [`Error::Io`](voronaut::Error::Io) of a file that cannot be read; [`Error::Parse`](voronaut::Error::Parse) of a text that is not what
 /// its format asks for; [`Error::Domain`](voronaut::Error::Domain) of what makes no surface; [`Error::Limit`](voronaut::Error::Limit) of
 /// too many triangles.
-pub fn read_surface(spec: &str, options: RepairOptions) -> Result<(Input, Mended)> {
+pub fn read_surface(spec: &str, options: RepairOptions) -> Result<(Manifold, Mended)> {
     if let Some(shape) = surface::shape(spec, None) {
         return Ok((shape?, Mended::default()));
     }
@@ -81,7 +82,7 @@ pub fn read_surface(spec: &str, options: RepairOptions) -> Result<(Input, Mended
         return Err(neither(spec, SURFACES));
     }
     let (surface, mended) = surface_of(spec, &read(Path::new(spec))?, options)?;
-    Ok((Input::new(surface, None), mended))
+    Ok((Manifold::new(surface, None), mended))
 }
 
 /// What users write for a surface, for messages.
@@ -100,8 +101,8 @@ mod tests {
     use crate::{obj, off, ply, stl};
     use proptest::prelude::*;
     use std::io::Write;
+    use voronaut::manifold::surface::metric::{Spec, field};
     use voronaut::metric::Bounds;
-    use voronaut::surface::metric::{Spec, field};
 
     fn data(name: &str) -> String {
         format!("{}/../../data/{name}", env!("CARGO_MANIFEST_DIR"))
@@ -109,11 +110,13 @@ mod tests {
 
     #[test]
     fn spot_and_bob() {
-        let spot = read_surface(&data("spot.obj"), RepairOptions::default()).unwrap().0.surface;
+        let spot = read_surface(&data("spot.obj"), RepairOptions::default()).unwrap().0;
+        let spot = spot.surface();
         let components = spot.components();
         assert_eq!((spot.positions().len(), components.len()), (2930, 1));
         assert_eq!((components[0].genus(), components[0].borders, spot.turned()), (0, 0, 0));
-        let bob = read_surface(&data("bob_small.obj"), RepairOptions::default()).unwrap().0.surface;
+        let bob = read_surface(&data("bob_small.obj"), RepairOptions::default()).unwrap().0;
+        let bob = bob.surface();
         let components = bob.components();
         assert_eq!((bob.positions().len(), components.len()), (250, 1));
         assert_eq!((components[0].genus(), components[0].borders, bob.turned()), (1, 0, 0));
@@ -128,7 +131,7 @@ mod tests {
             read_surface(file.path().to_str().unwrap(), RepairOptions::default())
                 .unwrap()
                 .0
-                .surface
+                .surface()
                 .euler_characteristic(),
             2
         );
@@ -144,7 +147,7 @@ mod tests {
         );
         let (mended, notes) = read_surface(path, RepairOptions { repair: true }).unwrap();
         let notes: Vec<_> = notes.sentences().collect();
-        assert_eq!((mended.surface.topology().face_count(), notes.len()), (3, 4), "{notes:?}");
+        assert_eq!((mended.topology().face_count(), notes.len()), (3, 4), "{notes:?}");
     }
 
     #[test]
@@ -224,10 +227,10 @@ mod tests {
             for surface in found.into_iter().flatten().filter_map(|mesh| Surface::new(&mesh).ok()) {
                 prop_assert!(Surface::new(&surface.to_mesh()).is_ok());
                 prop_assert!(surface.components().iter().all(|c| c.genus() >= 0));
-                let input = Input::new(surface, None);
+                let input = Manifold::new(surface, None);
                 let Ok(metric) = field(&Spec::Curvature(None), &input, Bounds::default()) else { continue };
-                for face in input.surface.topology().faces() {
-                    let place = input.closest(input.surface.triangle(face)[0]);
+                for face in input.topology().faces() {
+                    let place = input.closest(input.triangle(face)[0]);
                     prop_assert!(place.is_ok_and(|place| !metric.at(&place).xx.is_nan()));
                 }
             }

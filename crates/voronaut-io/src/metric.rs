@@ -4,13 +4,13 @@ use super::files::ending;
 use super::files::read_solution;
 use super::{Format, read};
 use std::path::{Path, PathBuf};
-use voronaut::domain::Domain;
 use voronaut::geometry::{Aabb, Tensor, Tensor3};
+use voronaut::manifold::Manifold;
+use voronaut::manifold::domain::Domain;
+use voronaut::manifold::surface::metric::{Spec, SurfaceMetric};
 use voronaut::mesh::{Mesh, Solution, SolutionValues, TensorOrder};
 use voronaut::metric::MetricSpec;
 use voronaut::recipe::{self, GradedAt, MetricOptions, Origin, PlanarMetric, SurfaceSource};
-use voronaut::surface::Input;
-use voronaut::surface::metric::{Spec, SurfaceMetric};
 use voronaut::{Error, Result};
 
 /// Where the metric of a planar domain comes from.
@@ -75,7 +75,7 @@ impl MetricFiles<'_> {
         match (source, self.background) {
             (MetricSource::Named(spec), None) => {
                 demand_default(self.order)?;
-                recipe::metric(spec, domain, options, at)
+                recipe::metric(spec, domain.planar(), options, at)
             }
             (MetricSource::Named(_), Some(mesh)) => {
                 let what = "only a .sol metric is given on a background mesh";
@@ -83,7 +83,7 @@ impl MetricFiles<'_> {
             }
             (MetricSource::File(path), _) => {
                 let (values, mesh) = self.read(path, domain)?;
-                recipe::metric_of_values(&mesh, &values, &path.display().to_string(), domain, options, at)
+                recipe::metric_of_values(&mesh, &values, &path.display().to_string(), domain.planar(), options, at)
             }
             (MetricSource::Hessian(path), _) => {
                 let (values, mesh) = self.read(path, domain)?;
@@ -91,7 +91,7 @@ impl MetricFiles<'_> {
                     let help = "give one number (type 1) per vertex";
                     return Err(Error::parse(path.display().to_string(), "the values are no scalars", help));
                 }
-                recipe::metric_of_solution(&mesh, &values, domain, options, at)
+                recipe::metric_of_solution(&mesh, &values, domain.planar(), options, at)
             }
         }
     }
@@ -116,7 +116,7 @@ impl MetricFiles<'_> {
 /// As of [`Spec::parse`] and [`recipe::metric_on_surface`]; a file is missing or not what it should be.
 pub fn surface_metric(
     text: &str,
-    input: &Input,
+    input: &Manifold,
     options: &MetricOptions,
     order: TensorOrder,
     at: GradedAt,
@@ -252,15 +252,15 @@ mod tests {
 
     #[test]
     fn values_at_the_vertices_of_a_surface_are_its_metric() {
-        let input = Input::shape("sphere:2", Some(0.5)).unwrap();
+        let input = Manifold::shape("sphere:2", Some(0.5)).unwrap();
         let mut file = tempfile::Builder::new().suffix(".sol").tempfile().unwrap();
-        let count = input.surface.positions().len();
+        let count = input.positions().len();
         let rows = "4 0 4 0 0 4\n".repeat(count);
         write!(file, "MeshVersionFormatted 2 Dimension 3 SolAtVertices {count} 1 3\n{rows}").unwrap();
         let path = file.path().to_str().unwrap();
         let field =
             surface_metric(path, &input, &MetricOptions::default(), TensorOrder::Disk, GradedAt::Scale(1.0)).unwrap();
-        let place = input.surface.place_of(VertexId(7)).unwrap();
+        let place = input.place_of(VertexId(7)).unwrap();
         let m = TangentPlane::new(place.normal).restrict(field.at(&place));
         assert!((m.xx - 4.0).abs() + m.xy.abs() + (m.yy - 4.0).abs() < 1e-12, "{m:?}");
     }

@@ -4,8 +4,8 @@ use super::codec::{At, Form, Sink, Source, Text};
 use std::io::{self, BufRead, Write};
 use std::ops::RangeInclusive;
 use voronaut::Result;
-use voronaut::domain::{Poly, PolyRegion};
 use voronaut::geometry::Point;
+use voronaut::manifold::domain::{Poly, PolyRegion};
 
 /// Reads a `.poly` text with its vertices inline, numbered from 0 or 1. Vertex attributes are passed over. ([`read_pslg`](super::read_pslg)
 /// finds vertices in the `.node` file beside it, too.)

@@ -6,13 +6,13 @@ use std::collections::BTreeMap;
 use voronaut::canvas::CanvasFigures;
 use voronaut::certificate::Certificate;
 use voronaut::figures::{Diagram, Dual, NetFigures, Protection, StarSet};
+use voronaut::manifold::surface::metric::CurvatureFigures;
 use voronaut::mesh::{Mesh, Periodic};
 use voronaut::optimise::{Polished, Relaxed};
 use voronaut::quality::{
     Angles, EdgeLengths, Fidelity, Histograms, InterpolationError, MetricQuality, Quality, SurfaceFidelity,
     UnmetFigures, Validity, Worst,
 };
-use voronaut::surface::metric::CurvatureFigures;
 
 /// Everything `--report` says. What was not measured is null, and so is what is not finite; the order of keys is fixed.
 #[derive(Clone, Debug, Default, Serialize)]

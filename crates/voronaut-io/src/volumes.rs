@@ -165,8 +165,8 @@ fn turned_away(points: &[[f64; 3]], mut polygon: Vec<u32>, corners: &[u32]) -> V
 #[cfg(test)]
 mod tests {
     use super::*;
+    use voronaut::manifold::surface::Surface;
     use voronaut::mesh::Mesh;
-    use voronaut::surface::Surface;
 
     /// The corners of the unit cube, the base first.
     fn cube() -> Vec<[f64; 3]> {

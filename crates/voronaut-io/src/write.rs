@@ -147,7 +147,7 @@ mod tests {
     #[test]
     fn surfaces_read_back_from_every_format_that_is_read() {
         let directory = tempfile::tempdir().unwrap();
-        let mesh = voronaut::surface::torus(2.0, 0.7, 0.4).unwrap().to_mesh();
+        let mesh = voronaut::manifold::surface::torus(2.0, 0.7, 0.4).unwrap().to_mesh();
         for (ending, tolerance) in [
             ("mesh", 0.0),
             ("meshb", 0.0),

@@ -1,9 +1,9 @@
 //! Files of other programs: what they hold is what these programs say they wrote.
 
 use std::path::PathBuf;
-use voronaut::domain::{Domain, from_mesh};
+use voronaut::manifold::domain::{Domain, from_mesh};
+use voronaut::manifold::surface::Surface;
 use voronaut::mesh::{Mesh, SolutionValues};
-use voronaut::surface::Surface;
 use voronaut_io::sol;
 
 /// A file of `tests/data/medit`, whose README says what wrote it.

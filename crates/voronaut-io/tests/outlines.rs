@@ -1,7 +1,7 @@
 //! Graphs as outlines, through both formats.
 
-use voronaut::domain::{Domain, Pslg, from_poly, from_polygons, to_poly, to_polygons};
 use voronaut::geometry::signed_area;
+use voronaut::manifold::domain::{Domain, Pslg, from_poly, from_polygons, to_poly, to_polygons};
 use voronaut_io::{geojson, poly};
 
 /// A square of region 4 with a hole, in which an island of region 5 lies; the left of the square is region 6.

@@ -1,8 +1,8 @@
 //! Domains from Triangle's files.
 
 use voronaut::Result;
-use voronaut::domain::{Filling, Pslg, from_poly};
 use voronaut::geometry::Point;
+use voronaut::manifold::domain::{Filling, Pslg, from_poly};
 use voronaut_io::poly;
 
 fn pslg(text: &str) -> Result<Pslg> {

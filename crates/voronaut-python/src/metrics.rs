@@ -7,14 +7,14 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
-use voronaut::domain::Domain;
 use voronaut::geometry::{Point, Tensor};
+use voronaut::manifold::Manifold;
+use voronaut::manifold::domain::Domain;
+use voronaut::manifold::surface::metric::SurfaceMetric;
 use voronaut::mesh::{Mesh, Solution, SolutionValues, TensorOrder};
 use voronaut::metric::nodal::{self, implied};
 use voronaut::metric::{Bounded, Bounds, MetricField, MetricSpec, Recovery, Uniform, recover_hessian};
 use voronaut::recipe::{self, GradedAt, MetricOptions, Origin, PlanarMetric, SurfaceSource};
-use voronaut::surface::Input;
-use voronaut::surface::metric::SurfaceMetric;
 use voronaut::{Error, Result};
 use voronaut_cli::HeldMetric;
 use voronaut_io::{MetricFiles, MetricSource, metric_origin, surface_metric};
@@ -87,23 +87,23 @@ impl HeldMetric for Metric {
 
     fn in_plane(&self, domain: &Domain, options: &MetricOptions, at: GradedAt) -> Result<PlanarMetric> {
         let (same, whole) =
-            (MetricOptions::default(), |field| recipe::metric_of_field(field, None, domain, options, at));
+            (MetricOptions::default(), |field| recipe::metric_of_field(field, None, domain.planar(), options, at));
         match self {
             Self::Text(text) => MetricFiles::default().metric(&MetricSource::parse(text)?, domain, options, at),
             Self::Values(Some(mesh), values) => {
-                recipe::metric_of_values(mesh, values, "the metric's values", domain, options, at)
+                recipe::metric_of_values(mesh, values, "the metric's values", domain.planar(), options, at)
             }
             Self::Values(None, _) => {
                 let help = "give the mesh that they belong to: Metric.from_array(values, mesh)";
                 Err(Error::unsupported("values of a metric without their mesh, in the plane", help))
             }
-            Self::Solution(mesh, values) => recipe::metric_of_solution(mesh, values, domain, options, at),
+            Self::Solution(mesh, values) => recipe::metric_of_solution(mesh, values, domain.planar(), options, at),
             Self::Function(function, course) => {
                 let sample = |points: &[Point]| {
                     let flat: Vec<f64> = points.iter().flat_map(|p| [p.x, p.y]).collect();
                     planar(&called(function, course, &flat, 2)?)
                 };
-                recipe::metric_of_samples(sample, domain, options, at)
+                recipe::metric_of_samples(sample, domain.planar(), options, at)
             }
             Self::Combined(weights, all) => {
                 let fields: Vec<_> = all.iter().map(|metric| metric.field(domain, at)).collect::<Result<_>>()?;
@@ -115,12 +115,12 @@ impl HeldMetric for Metric {
                 whole(metric.in_plane(domain, &graded, at)?.field)
             }
             Self::Scaled(target, metric) => {
-                recipe::metric_of_field(metric.field(domain, at)?, Some(*target), domain, options, at)
+                recipe::metric_of_field(metric.field(domain, at)?, Some(*target), domain.planar(), options, at)
             }
         }
     }
 
-    fn on_surface(&self, input: &Input, options: &MetricOptions, at: GradedAt) -> Result<Box<dyn SurfaceMetric>> {
+    fn on_surface(&self, input: &Manifold, options: &MetricOptions, at: GradedAt) -> Result<Box<dyn SurfaceMetric>> {
         let made = |source| recipe::metric_on_surface(source, input, options, at);
         let solution = |values: &SolutionValues| Solution { dimension: 3, values: values.clone() };
         match self {
@@ -193,7 +193,7 @@ fn planar(values: &SolutionValues) -> Result<Vec<Tensor>> {
 
 /// The metric that several make at the vertices of a mesh, as `voronaut metric` does it: tensors, and their complexity.
 pub(crate) fn at_vertices(pipeline: &nodal::Pipeline, mesh: &Mesh, metrics: &[Metric]) -> Result<nodal::Outcome> {
-    let domain = Domain::new(&voronaut::domain::from_mesh(mesh)?)?;
+    let domain = Domain::new(&voronaut::manifold::domain::from_mesh(mesh)?)?;
     let sources = metrics.iter().map(|metric| match metric {
         Metric::Solution(on, SolutionValues::Scalar(values)) if on == mesh => {
             Ok(nodal::Source::Hessian(recover_hessian(mesh, values, Recovery::default())?))

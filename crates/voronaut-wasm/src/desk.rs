@@ -7,9 +7,10 @@ use crate::watch::{Watch, Window};
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::path::Path;
-use voronaut::domain::Domain;
+use voronaut::manifold::Manifold;
+use voronaut::manifold::domain::Domain;
+use voronaut::manifold::surface::RepairOptions;
 use voronaut::mesh::Mesh;
-use voronaut::surface::{RepairOptions, Surface};
 use voronaut::{Error, Result};
 use voronaut_cli::{Held, Job, Made};
 use voronaut_io::{Fields, Format, Given};
@@ -60,7 +61,7 @@ impl Desk {
         let held = self.held([domain])?;
         Ok(match held.given(domain, RepairOptions::default())?.0 {
             Given::Plane(domain) => outline(&domain),
-            Given::Surface(input) => triangles(&input.surface),
+            Given::Surface(input) => triangles(&input),
         })
     }
 
@@ -112,8 +113,8 @@ fn outline(domain: &Domain) -> Answer {
     Answer::new(json!({ "planar": true })).with_points("points", &points).with_numbers("segments", ends)
 }
 
-fn triangles(surface: &Surface) -> Answer {
-    let mesh = surface.to_mesh();
+fn triangles(surface: &Manifold) -> Answer {
+    let mesh = surface.whole_mesh();
     let numbers = mesh.triangles.as_flattened().iter().copied();
     Answer::new(json!({ "planar": false })).with_points("points", &mesh.points).with_numbers("triangles", numbers)
 }

@@ -1,7 +1,7 @@
 //! Files that a page holds: read from bytes as the program reads them from disk.
 
 use std::path::Path;
-use voronaut::domain::{from_poly, from_polygons};
+use voronaut::manifold::domain::{from_poly, from_polygons};
 use voronaut::{Error, Result};
 use voronaut_cli::Held;
 use voronaut_io::{Format, ending, geojson, in_file, poly};

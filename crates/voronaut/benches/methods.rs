@@ -45,7 +45,7 @@ fn print_table(cases: &[Case; 3], vertices: usize) {
     let mut rows = vec![HEAD.map(String::from)];
     let mut refusals: Vec<String> = Vec::new();
     for kind in Kind::ALL {
-        let canvases = cases.each_ref().map(|case| Canvas::new(kind, &case.domain(), &case.metric, vertices));
+        let canvases = cases.each_ref().map(|case| Canvas::new(kind, case.domain().planar(), &case.metric, vertices));
         for method in Method::ALL {
             let figures = [0, 1, 2].map(|k| match &canvases[k] {
                 Ok(canvas) => figures(&cases[k], canvas, method).map_err(|error| error.to_string()),

@@ -1,7 +1,7 @@
 //! Adapts a mesh to a function, so that linear interpolation errs least, and compares with an even mesh:
 //! `cargo run --release --example function`.
 
-use voronaut::domain::Domain;
+use voronaut::manifold::domain::Domain;
 use voronaut::metric::{Expression, Norm, Snapshot, Uniform, Variables};
 use voronaut::progress::Silent;
 use voronaut::quality::interpolation_error;
@@ -14,7 +14,8 @@ fn main() -> voronaut::Result<()> {
     let (norm, vertices) = (Norm::default(), Some(2000));
     let options = MeshOptions { vertices, ..MeshOptions::default() };
 
-    let optimal = metric_of_function(&function, &square, &MetricOptions::default(), GradedAt::of(vertices, None))?;
+    let optimal =
+        metric_of_function(&function, square.planar(), &MetricOptions::default(), GradedAt::of(vertices, None))?;
     for (name, metric) in [("even", PlanarMetric::plain(Uniform::default())), ("adapted", optimal)] {
         let mesh = mesh_for(&square, metric.field.as_ref(), metric.aim(norm), &options, &Silent)?.mesh;
         let error = interpolation_error(&mesh, &function, norm)?;

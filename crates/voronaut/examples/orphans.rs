@@ -18,10 +18,10 @@ use std::error::Error;
 use std::path::Path;
 use voronaut::canvas::{Canvas, VERTICES_PER_SEED, size_for};
 use voronaut::diagram::{Diagram, Kind};
-use voronaut::domain::Domain;
 use voronaut::dual::Road;
 use voronaut::geodesic::Method;
 use voronaut::geometry::{Aabb, Orientation, Point, orientation};
+use voronaut::manifold::domain::Domain;
 use voronaut::mesh::Mesh;
 use voronaut::metric::{MetricField, MetricSpec};
 use voronaut::net::Random;
@@ -56,7 +56,7 @@ impl Scene {
         let shape = if is_swirl { "rect:-2,-2,2,2" } else { "rect:-1,-1,1,1" };
         let domain = Domain::shape(shape)?;
         let spec = MetricSpec::parse(metric)?;
-        let field = recipe::metric(&spec, &domain, &MetricOptions::default(), GradedAt::Scale(1.0))?.field;
+        let field = recipe::metric(&spec, domain.planar(), &MetricOptions::default(), GradedAt::Scale(1.0))?.field;
         Ok(Self { name: metric.into(), is_swirl, domain, field })
     }
 
@@ -65,7 +65,7 @@ impl Scene {
     }
 
     fn canvas(&self, seeds: usize) -> Outcome<Canvas> {
-        Ok(Canvas::intrinsic(&self.domain, self.field(), size_for(seeds, VERTICES_PER_SEED))?)
+        Ok(Canvas::intrinsic(self.domain.planar(), self.field(), size_for(seeds, VERTICES_PER_SEED))?)
     }
 
     fn relaxed(&self, count: usize) -> Outcome<Vec<Point>> {

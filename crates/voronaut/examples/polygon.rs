@@ -1,7 +1,7 @@
 //! Meshes a polygon with a hole by a metric of our own: `cargo run --release --example polygon`.
 
-use voronaut::domain::{Domain, Polygon, Polygons, Ring, from_polygons};
 use voronaut::geometry::{Point, Tensor};
+use voronaut::manifold::domain::{Domain, Polygon, Polygons, Ring, from_polygons};
 use voronaut::progress::Silent;
 use voronaut::recipe::{self, MeshOptions};
 

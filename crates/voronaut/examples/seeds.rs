@@ -3,9 +3,9 @@
 
 use voronaut::canvas::{Canvas, size_for};
 use voronaut::diagram::Diagram;
-use voronaut::domain::Domain;
 use voronaut::dual::Road;
 use voronaut::geometry::Point;
+use voronaut::manifold::domain::Domain;
 use voronaut::metric::Swirl;
 use voronaut::progress::Silent;
 use voronaut::recipe;
@@ -18,7 +18,7 @@ fn main() -> voronaut::Result<()> {
         (1..=200).map(f64::from).map(|i| Point::new(part(i, 0.754_877_67), part(i, 0.569_840_29))).collect();
 
     let metric = Swirl::default();
-    let canvas = Canvas::intrinsic(&square, &metric, size_for(seeds.len(), 60))?;
+    let canvas = Canvas::intrinsic(square.planar(), &metric, size_for(seeds.len(), 60))?;
     let diagram = Diagram::new(&canvas, &metric, &seeds)?;
     let dual = recipe::dual(&diagram, &metric, Road::Both, &Silent);
     let (triangles, account) = (dual.triangles.len(), &dual.account);

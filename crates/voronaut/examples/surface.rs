@@ -1,11 +1,11 @@
 //! Remeshes a surface by its curvature, with vertices where mesh and surface are closest: `cargo run --release --example surface --
 //! data/spot.obj spot.obj`.
 
+use voronaut::manifold::surface::metric::{Spec, field};
+use voronaut::manifold::surface::{FeatureOptions, RepairOptions};
 use voronaut::metric::Bounds;
 use voronaut::progress::Silent;
 use voronaut::recipe::{self, MeshOptions};
-use voronaut::surface::metric::{Spec, field};
-use voronaut::surface::{FeatureOptions, RepairOptions};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();

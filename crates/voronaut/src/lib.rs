@@ -7,11 +7,11 @@
 //!
 //! # From a polygon to a measured mesh
 //!
-//! A [`Domain`](domain::Domain) is a polygon with holes, regions and labels, validated once and for all. It comes from
+//! A [`Domain`](manifold::domain::Domain) is a polygon with holes, regions and labels, validated once and for all. It comes from
 //! rings, from a shape, or from a graph of points and segments (files are read by the crate `voronaut-io`):
 //!
 //! ```
-//! use voronaut::domain::{Domain, Polygon, Polygons, Ring, from_polygons};
+//! use voronaut::manifold::domain::{Domain, Polygon, Polygons, Ring, from_polygons};
 //! use voronaut::geometry::Point;
 //!
 //! let ring = |x0, y0, x1, y1, label| Ring {
@@ -31,7 +31,7 @@
 //! function, [`recipe::mesh`]; its options have defaults, here all but the number of vertices:
 //!
 //! ```
-//! # use voronaut::domain::Domain;
+//! # use voronaut::manifold::domain::Domain;
 //! # let plate = Domain::shape("rect:0,0,4,2")?;
 //! use voronaut::geometry::{Point, Tensor};
 //! use voronaut::progress::Silent;
@@ -51,7 +51,7 @@
 //! the scaled metric the mesh can be measured (`voronaut-draw` draws it):
 //!
 //! ```
-//! # use voronaut::domain::Domain;
+//! # use voronaut::manifold::domain::Domain;
 //! # use voronaut::geometry::{Point, Tensor};
 //! # use voronaut::{progress::Silent, recipe::{self, MeshOptions}};
 //! # let plate = Domain::shape("rect:0,0,4,2")?;
@@ -91,9 +91,8 @@ pub mod geometry;
 pub mod mesh;
 pub mod triangulation;
 pub mod planar;
-pub mod domain;
 pub mod metric;
-pub mod surface;
+pub mod manifold;
 pub mod transfer;
 pub mod geodesic;
 mod in_circle;

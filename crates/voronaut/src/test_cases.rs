@@ -1,7 +1,7 @@
 //! What tests of many modules share: domains, and how many cases property tests try.
 
-use crate::domain::{Domain, Polygon, Polygons, Ring, from_polygons};
 use crate::geometry::Point;
+use crate::manifold::domain::{Domain, Polygon, Polygons, Ring, from_polygons};
 use crate::mesh::Mesh;
 use proptest::test_runner::Config;
 

@@ -2,8 +2,8 @@
 //! at vertices costs against the function itself.
 
 use std::sync::OnceLock;
-use voronaut::domain::Domain;
 use voronaut::geometry::Point;
+use voronaut::manifold::domain::Domain;
 use voronaut::mesh::{Mesh, SolutionValues};
 use voronaut::metric::{Expression, Norm, ScalarField, Snapshot, Variables};
 use voronaut::progress::Silent;
@@ -39,7 +39,7 @@ fn for_function(text: &str, vertices: usize, polish: usize, norm: Norm) -> Meshe
 
 fn metric_for(text: &str, vertices: usize, norm: Norm) -> PlanarMetric {
     let options = MetricOptions { norm, ..MetricOptions::default() };
-    metric_of_function(&function(text), &square(), &options, GradedAt::of(Some(vertices), None)).unwrap()
+    metric_of_function(&function(text), square().planar(), &options, GradedAt::of(Some(vertices), None)).unwrap()
 }
 
 /// The mesh for the layers with 2,000 vertices, made once.
@@ -129,7 +129,7 @@ fn a_solution_at_vertices_is_nearly_as_good_as_its_function() {
     let metric = metric_of_solution(
         exact,
         &SolutionValues::Scalar(values(exact)),
-        &square(),
+        square().planar(),
         &options,
         GradedAt::of(Some(2000), None),
     );
@@ -146,7 +146,7 @@ fn what_a_coarse_solution_does_not_know_is_not_polished() {
     let values = even.points.iter().map(|&[x, y, _]| f.value(Point::new(x, y))).collect();
     let options = MetricOptions::default();
     let at = GradedAt::of(Some(500), None);
-    let metric = metric_of_solution(&even, &SolutionValues::Scalar(values), &square(), &options, at).unwrap();
+    let metric = metric_of_solution(&even, &SolutionValues::Scalar(values), square().planar(), &options, at).unwrap();
     let made = made(&metric, 500, 20, Norm::default());
     assert!(made.notes.iter().any(|note| note.contains("too coarse to polish")), "{:?}", made.notes);
     assert!(made.polished.is_none());

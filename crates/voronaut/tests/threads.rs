@@ -1,6 +1,6 @@
 //! The same mesh, bit for bit, for any number of threads.
 
-use voronaut::domain::Domain;
+use voronaut::manifold::domain::Domain;
 use voronaut::metric::{MetricField, Shock, Swirl};
 use voronaut::progress::Silent;
 use voronaut::recipe::{self, MeshOptions, Meshed};

@@ -1,7 +1,7 @@
 //! The main job against what is known: unit meshes of metrics with known answers, and laws that any mesher obeys.
 
-use voronaut::domain::Domain;
 use voronaut::geometry::{Point, Tensor};
+use voronaut::manifold::domain::Domain;
 use voronaut::metric::{MetricField, MetricSpec};
 use voronaut::progress::Silent;
 use voronaut::quality::{MetricQuality, check, metric_quality, validity};
@@ -19,7 +19,7 @@ fn meshed(domain: &Domain, field: &dyn MetricField, vertices: usize) -> (Meshed,
 
 fn named(spec: &str, domain: &Domain) -> Box<dyn MetricField> {
     let spec = MetricSpec::parse(spec).unwrap();
-    metric(&spec, domain, &MetricOptions::default(), GradedAt::Scale(1.0)).unwrap().field
+    metric(&spec, domain.planar(), &MetricOptions::default(), GradedAt::Scale(1.0)).unwrap().field
 }
 
 #[test]
@@ -79,7 +79,7 @@ fn required_edges_and_vertices_labels_and_regions_stay() {
                 Triangles 5\n1 7 6 10\n7 2 6 10\n2 5 6 10\n2 3 4 20\n2 4 5 20\nEdges 3\n2 5 77\n3 4 33\n6 1 44\n\
                 RequiredVertices 1\n7\nRequiredEdges 1\n3\nEnd\n";
     let raw = medit::read(text.as_bytes(), "two.mesh").unwrap().mesh;
-    let domain = Domain::new(&voronaut::domain::from_mesh(&raw).unwrap()).unwrap();
+    let domain = Domain::new(&voronaut::manifold::domain::from_mesh(&raw).unwrap()).unwrap();
     let (Meshed { mesh, .. }, _) = meshed(&domain, &|_: Point| Tensor::IDENTITY, 400);
     let of = |label: i32| mesh.edge_labels.iter().filter(|&&l| l == label).count();
     assert_eq!(of(44), 1, "a required edge is not split");

@@ -11,11 +11,11 @@ use serde_json::{Value, json};
 use solver::Shell;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+use voronaut::manifold::surface::{FeatureOptions, RepairOptions};
 use voronaut::mesh::Solutions;
 use voronaut::metric::{Expression, Variables};
 use voronaut::quality::{Meetings, validity, validity_on};
-use voronaut::recipe::{self, Effort, Ground, Idle, LoopOptions, MeshOptions, Origin, Source, Step, Task};
-use voronaut::surface::{FeatureOptions, RepairOptions};
+use voronaut::recipe::{self, Adaptive, Effort, Idle, LoopOptions, MeshOptions, Origin, Source, Step, Task};
 use voronaut::transfer::{Carried, Extent, Kind, Overshoot, TransferOptions};
 use voronaut::{Error, Result};
 use voronaut_io::{Format, Given, metric_origin};
@@ -142,9 +142,9 @@ pub(crate) fn run(args: &LoopArgs) -> Result<()> {
         Given::Surface(input) => Given::Surface(input.cut(&FeatureOptions::default())?),
         plane @ Given::Plane(_) => plane,
     };
-    let (ground, meetings) = match &given {
-        Given::Plane(domain) => (Ground::Plane(domain), None),
-        Given::Surface(input) => (Ground::Surface(input), Some(Meetings::of(input.whole_mesh()))),
+    let (on, meetings): (&dyn Adaptive, _) = match &given {
+        Given::Plane(domain) => (domain, None),
+        Given::Surface(input) => (input, Some(Meetings::of(input.whole_mesh()))),
     };
     let options = args.options();
     demand_idle(args, &options, meetings.is_some())?;
@@ -166,11 +166,11 @@ pub(crate) fn run(args: &LoopArgs) -> Result<()> {
     if let Some(command) = &args.solver {
         let shell = Shell::new(command)?;
         let mut solve = |number: usize, mesh: &_, start: Option<&Solutions>| shell.solve(number, mesh, start);
-        recipe::adapt(ground, Source::Solver(&mut solve), &options, &bar, &mut each)?;
+        recipe::adapt(on, Source::Solver(&mut solve), &options, &bar, &mut each)?;
     } else {
         let variables = if meetings.is_some() { Variables::SpaceMotion } else { Variables::Motion };
         let source = Source::Formula(function(args, variables)?, args.time);
-        recipe::adapt(ground, source, &options, &bar, &mut each)?;
+        recipe::adapt(on, source, &options, &bar, &mut each)?;
     }
     drop(bar);
     args.run.write_report(&format!("{:#}\n", told.report()))

@@ -10,11 +10,11 @@ use serde_json::{Value, json};
 use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Instant;
+use voronaut::manifold::Manifold;
 use voronaut::mesh::{Mesh, Solution, SolutionValues, TensorOrder};
 use voronaut::metric::nodal::{COMPLEXITY_PER_VERTEX, Combination, Outcome, Pipeline};
 use voronaut::metric::{Norm, Recovery};
 use voronaut::recipe::metric_at_vertices;
-use voronaut::surface::Surface;
 use voronaut::{Error, Result};
 use voronaut_io::Document;
 
@@ -154,7 +154,7 @@ fn on_surface(args: &MetricArgs, pipeline: &Pipeline, mesh: &Mesh) -> Result<(Ou
     sources::demand_for_surfaces(args)?;
     let read = |text: &String| sources::OnSurface::read(text, mesh, args);
     let read = args.metric.iter().map(read).collect::<Result<Vec<_>>>()?;
-    metric_at_vertices(pipeline, Surface::new(mesh)?, read.iter().map(sources::OnSurface::source).collect())
+    metric_at_vertices(pipeline, Manifold::of(mesh)?, read.iter().map(sources::OnSurface::source).collect())
 }
 
 fn combination(args: &MetricArgs) -> Result<Combination> {

@@ -3,14 +3,14 @@
 use super::{LimitText, MetricArgs};
 use crate::options::refuse;
 use std::path::Path;
-use voronaut::domain::{Domain, from_mesh};
 use voronaut::geometry::Tensor;
+use voronaut::manifold::domain::{Domain, from_mesh};
+use voronaut::manifold::surface::Implicit;
+use voronaut::manifold::surface::metric::Spec;
 use voronaut::mesh::{Mesh, Solution, SolutionValues, TensorOrder};
 use voronaut::metric::nodal::{Limit, Limits, Source, implied, isotropic};
 use voronaut::metric::{MetricSpec, Recovery, ScalarField, Snapshot, recover_hessian};
 use voronaut::recipe::{GradedAt, MetricOptions, SurfaceSource};
-use voronaut::surface::Implicit;
-use voronaut::surface::metric::Spec;
 use voronaut::{Error, Result};
 use voronaut_io::{MetricFiles, MetricSource, read_metric, sol};
 

@@ -11,10 +11,10 @@ use std::path::PathBuf;
 pub(crate) use values::GIB;
 use values::{default_memory_limit, pairs, window};
 use voronaut::geometry::Aabb;
+use voronaut::manifold::surface::{FeatureOptions, RepairOptions};
 use voronaut::mesh::TensorOrder;
 use voronaut::metric::{Bounds, MOST_SWEEPS, Norm, Recovery};
 use voronaut::recipe::MetricOptions;
-use voronaut::surface::{FeatureOptions, RepairOptions};
 use voronaut::{Error, Result};
 use voronaut_draw::Picture;
 

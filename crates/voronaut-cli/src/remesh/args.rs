@@ -3,9 +3,9 @@
 use crate::options::{Damage, Limits, Run, not_negative, positive};
 use clap::Args;
 use std::path::PathBuf;
+use voronaut::manifold::surface::{FeatureOptions, RepairOptions};
 use voronaut::mesh::TensorOrder;
 use voronaut::recipe::Effort;
-use voronaut::surface::{FeatureOptions, RepairOptions};
 
 pub(crate) const EXAMPLES: &str = "\
 Options are spelt as mmg2d's and mmgs's, with one dash or two. IN.sol next to IN.mesh is the metric if no other is named, as mmg has

@@ -11,12 +11,14 @@ use crate::{account, summary};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use voronaut::Result;
+use voronaut::manifold::Manifold;
+use voronaut::manifold::domain::{Keep, RemeshInput};
+use voronaut::manifold::surface::Mended;
+use voronaut::manifold::surface::metric::{Finer, Sizing};
 use voronaut::mesh::{Mesh, Solution};
 use voronaut::progress::Progress;
 use voronaut::quality::fidelity;
-use voronaut::recipe::{self, Asked, Effort, Keep, MeshOptions, RemeshInput};
-use voronaut::surface::metric::{Finer, Sizing};
-use voronaut::surface::{Input, Mended};
+use voronaut::recipe::{self, Asked, Effort, MeshOptions};
 use voronaut_io::gmsh::Version;
 use voronaut_io::{Format, Given, Report, Strayed, in_file, read_metric, read_pslg};
 
@@ -94,7 +96,7 @@ fn in_plane(
 }
 
 /// A valid mesh of a surface, as mmgs does it.
-fn on_surface(args: &RemeshArgs, world: &World, input: Input, mended: &Mended, bar: &dyn Progress) -> Result<Made> {
+fn on_surface(args: &RemeshArgs, world: &World, input: Manifold, mended: &Mended, bar: &dyn Progress) -> Result<Made> {
     /// Vertices slide less than with `mesh --fit`: lengths of edges count for more here.
     const STIFFNESS: f64 = 0.5;
     /// The least size, as a share of the diagonal or of the one size asked for: as with mmgs.
@@ -104,14 +106,14 @@ fn on_surface(args: &RemeshArgs, world: &World, input: Input, mended: &Mended, b
     let given = given.map(|given| input.spread(&given)).transpose()?;
     let diagonal = input.diagonal();
     let sizing = sizing(args, [args.hsiz.map_or(LEAST[0] * diagonal, |h| LEAST[1] * h), diagonal]);
-    let sizes = sizing.sizes(&input.surface, given.as_ref())?;
-    let field = sizes.field(&input.surface)?;
+    let sizes = sizing.sizes(input.surface(), given.as_ref())?;
+    let field = sizes.field(input.surface())?;
     let options = MeshOptions { fit: !args.no_fit, stiffness: STIFFNESS, ..options(args, Effort::Normal) };
     let meshed = recipe::mesh_surface(&input, &field, None, &options, bar)?;
     let used = as_used(args, &sizing, metric_file.as_deref());
-    let field = Finer { field: &field, surface: &input.surface, logs: &meshed.finer };
+    let field = Finer { field: &field, surface: input.surface(), logs: &meshed.finer };
     let (report, _) = account::on_surface(&meshed, &input, mended, &field, used, world.tells(&args.run()))?;
-    let solution = sizes.solution(&field, meshed.metric_scale, &input.surface, &meshed.mesh.points)?;
+    let solution = sizes.solution(&field, meshed.metric_scale, input.surface(), &meshed.mesh.points)?;
     Ok(Made { mesh: meshed.mesh, report, solution })
 }
 
@@ -120,7 +122,7 @@ fn on_surface(args: &RemeshArgs, world: &World, input: Input, mended: &Mended, b
 enum Read {
     /// With what the reader left out.
     Plane(RemeshInput, Vec<String>),
-    Surface(Input, Mended),
+    Surface(Manifold, Mended),
 }
 
 fn read(args: &RemeshArgs, world: &World) -> Result<Read> {

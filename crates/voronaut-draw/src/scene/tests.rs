@@ -4,14 +4,14 @@ use super::*;
 use crate::render_png;
 use resvg::tiny_skia::Pixmap;
 use voronaut::Result;
+use voronaut::manifold::Manifold;
 use voronaut::mesh::Mesh;
-use voronaut::surface::{self, Surface};
 
 /// Seen along z, x to the right, with so few pixels that it is quick.
 const FRONT: View = View { from: Vector3::new(0.0, 0.0, 1.0), up: Vector3::new(0.0, 1.0, 0.0), pixels: 400 };
 
-fn sphere() -> Surface {
-    surface::Input::shape("sphere:1", Some(0.2)).unwrap().surface
+fn sphere() -> Manifold {
+    Manifold::shape("sphere:1", Some(0.2)).unwrap()
 }
 
 fn line(points: &[[f64; 3]]) -> Vec<Point3> {
@@ -19,7 +19,7 @@ fn line(points: &[[f64; 3]]) -> Vec<Point3> {
 }
 
 /// A surface, plain and smooth.
-fn plain(surface: &Surface) -> Scene {
+fn plain(surface: &Manifold) -> Scene {
     let topology = surface.topology();
     let triangles: Vec<[u32; 3]> = topology.faces().map(|f| topology.corners(f).map(|v| v.0)).collect();
     Scene::of_canvas(surface.positions(), &triangles, &vec![None; surface.positions().len()], &[])

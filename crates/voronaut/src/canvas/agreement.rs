@@ -43,8 +43,8 @@ impl Before {
 mod tests {
     use super::*;
     use crate::canvas::steiner::Steiner;
-    use crate::domain::Domain;
     use crate::geometry::{Point, Tensor};
+    use crate::manifold::domain::Domain;
     use crate::metric::Uniform;
 
     #[test]

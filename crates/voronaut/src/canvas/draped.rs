@@ -9,9 +9,9 @@ use crate::error::{Error, Result};
 use crate::geodesic::bowed_between;
 use crate::geometry::{Point3, TangentPlane, Tensor3};
 use crate::lists::distinct;
+use crate::manifold::surface::metric::{SurfaceMetric, check_tensor3};
+use crate::manifold::{Chart, Manifold, Place};
 use crate::parallel::prelude::*;
-use crate::surface::metric::{SurfaceMetric, check_tensor3};
-use crate::surface::{Chart, Input, Place};
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
 use std::collections::BTreeMap;
 
@@ -31,7 +31,7 @@ const FLAT: f64 = 1e-9;
 /// A triangulation draped over a surface, with its metric. Faces are labelled with the number of the input's triangle that they lie in.
 #[derive(Clone)]
 pub struct Draped<'s> {
-    pub(super) input: &'s Input,
+    pub(super) input: &'s Manifold,
     pub(super) metric: &'s dyn SurfaceMetric,
     pub(super) topology: Triangulation,
     places: Vec<Place>,
@@ -63,18 +63,18 @@ impl<'s> Draped<'s> {
     ///
     /// # Errors
     /// [`Error::Metric`] where the metric is not positive definite at a vertex.
-    pub(super) fn new(input: &'s Input, metric: &'s dyn SurfaceMetric) -> Result<Self> {
-        let mut topology = input.surface.topology().clone();
+    pub(super) fn new(input: &'s Manifold, metric: &'s dyn SurfaceMetric) -> Result<Self> {
+        let mut topology = input.topology().clone();
         for f in topology.faces().collect::<Vec<_>>() {
             topology.set_region(f, f.0.cast_signed());
         }
         let slots = topology.vertex_slots() as u32;
         let place = |v: u32| {
-            let place = input.surface.place_of(VertexId(v))?;
+            let place = input.place_of(VertexId(v))?;
             // On an equation's surface its normal counts.
-            Some(if input.implicit.is_some() { input.lift(&place, place.position)? } else { place })
+            Some(if input.equation().is_some() { input.lift(&place, place.position)? } else { place })
         };
-        let unused = input.surface.place(topology.faces().next().expect("a surface has triangles"), [1.0, 0.0, 0.0]);
+        let unused = input.place(topology.faces().next().expect("a surface has triangles"), [1.0, 0.0, 0.0]);
         let places: Vec<Place> = (0..slots).into_par_iter().map(|v| place(v).unwrap_or(unused)).collect();
         let tensors: Vec<Tensor3> = places.par_iter().with_min_len(256).map(|place| metric.at(place)).collect();
         for v in topology.vertices() {
@@ -180,7 +180,7 @@ impl<'s> Draped<'s> {
     /// Makes a place at the border of an equation's surface a vertex there: it is on the equation, and so beside the edges that
     /// the border has here. `None` of any other place.
     fn insert_on_border(&mut self, seed: &Place, at_home: &Homes) -> Result<Option<VertexId>> {
-        if self.input.implicit.is_none() || !self.input.is_at_border(seed, 0.0) {
+        if self.input.equation().is_none() || !self.input.is_at_border(seed, 0.0) {
             return Ok(None);
         }
         let faces = at_home.get(&seed.face).into_iter().flatten();
@@ -205,10 +205,10 @@ impl<'s> Draped<'s> {
 
     /// The input's triangles in which a place of one of them may be: on an equation's surface those around it, too.
     fn homes_around(&self, home: FaceId) -> Vec<FaceId> {
-        if self.input.implicit.is_none() {
+        if self.input.equation().is_none() {
             return vec![home];
         }
-        let input = self.input.surface.topology();
+        let input = self.input.topology();
         distinct(input.corners(home).into_iter().flat_map(|v| input.star(v)).map(HalfEdge::face))
     }
 
@@ -216,7 +216,7 @@ impl<'s> Draped<'s> {
     /// rounding, which must not decide.
     fn closest_on(&self, f: FaceId, p: Point3) -> (f64, [f64; 3]) {
         let corners = self.topology.corners(f).map(|v| self.position(v));
-        let weights = crate::surface::closest_weights(corners, p);
+        let weights = crate::manifold::surface::closest_weights(corners, p);
         let distance = Point3::weighted(corners, weights).distance(p);
         (if distance < 1e-13 * self.input.diagonal() { 0.0 } else { distance }, weights)
     }
@@ -256,9 +256,9 @@ impl<'s> Draped<'s> {
     fn middle(&self, h: HalfEdge) -> Option<Place> {
         let [a, b] = self.topology.ends(h);
         let p = self.position(a).lerp(self.position(b), 0.5);
-        match self.input.implicit {
+        match self.input.equation() {
             Some(_) => self.input.lift(&self.places[a.index()], p),
-            None => Some(Place { position: p, ..self.input.surface.closest_on(self.home(h.face()), p) }),
+            None => Some(Place { position: p, ..self.input.closest_on(self.home(h.face()), p) }),
         }
     }
 
@@ -325,7 +325,7 @@ impl<'s> Draped<'s> {
     }
 
     /// The surface.
-    pub fn input(&self) -> &'s Input {
+    pub fn input(&self) -> &'s Manifold {
         self.input
     }
 

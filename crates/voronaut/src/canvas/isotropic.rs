@@ -132,8 +132,8 @@ pub(super) fn halve(mut planar: Planar, edges: &[[VertexId; 2]], counters: &mut 
 mod tests {
     use super::*;
     use crate::canvas::{Canvas, Kind};
-    use crate::domain::Domain;
     use crate::geometry::Vector;
+    use crate::manifold::domain::Domain;
     use crate::metric::{Shock, Uniform};
 
     /// Angles of a triangle at most and at least (degrees), Euclidean.
@@ -157,7 +157,7 @@ mod tests {
             [("rect:-1,-1,1,1", &shock as &dyn MetricField), ("rect:0,0,3,1", &turned), ("disk:0,0,1", &shock)]
         {
             let domain = Domain::shape(spec).unwrap();
-            let canvas = Canvas::isotropic_sized(&domain, field, 0.5).unwrap();
+            let canvas = Canvas::isotropic_sized(domain.planar(), field, 0.5).unwrap();
             let (ratio, angle) = worst(&canvas, field);
             assert!(ratio <= 0.5, "{spec}: {ratio}");
             // The corners of the disk's polygon are nearer to each other than the size.
@@ -171,7 +171,7 @@ mod tests {
     #[test]
     fn it_is_delaunay_with_as_many_vertices_as_asked_for() {
         let domain = Domain::shape("rect:-1,-1,1,1").unwrap();
-        let canvas = Canvas::new(Kind::Isotropic, &domain, &Shock { phi: 1.0, lambda: 0.6 }, 3000).unwrap();
+        let canvas = Canvas::new(Kind::Isotropic, domain.planar(), &Shock { phi: 1.0, lambda: 0.6 }, 3000).unwrap();
         assert_eq!(canvas.vertex_count(), 3000);
         let mut planar = canvas.embedded().clone();
         let mut lawson = Lawson::default();
@@ -191,7 +191,7 @@ mod tests {
                 let x = p.x / scale;
                 Tensor::new(1.0 + 8.0 * x * x, 0.5, 1.0) * (1.0 / (scale * scale))
             };
-            Canvas::new(Kind::Isotropic, &domain, &field, 800).unwrap()
+            Canvas::new(Kind::Isotropic, domain.planar(), &field, 800).unwrap()
         };
         let (one, large) = (make(1.0), make(64.0));
         let scaled: Vec<Point> = one.embedded().positions.iter().map(|p| Point::new(64.0 * p.x, 64.0 * p.y)).collect();
@@ -204,7 +204,7 @@ mod tests {
         let outline = [[0.0, 0.0], [3.0, 0.009], [3.0, 1.0], [1.5, 0.02], [0.0, 1.0]];
         let domain = crate::test_cases::plate(&[&outline]);
         let field = Uniform(Tensor::isotropic(1.0));
-        let canvas = Canvas::isotropic_sized(&domain, &field, 0.5).unwrap();
+        let canvas = Canvas::isotropic_sized(domain.planar(), &field, 0.5).unwrap();
         assert!(canvas.vertex_count() < 3000, "{}", canvas.vertex_count());
         canvas.topology().check().unwrap();
         assert!(canvas.embedded().is_embedded());
@@ -214,7 +214,7 @@ mod tests {
     fn refining_an_isotropic_canvas_keeps_its_vertices_and_kind() {
         let domain = Domain::shape("rect:0,0,1,1").unwrap();
         let field = Uniform(Tensor::new(9.0, 0.0, 1.0));
-        let canvas = Canvas::new(Kind::Isotropic, &domain, &field, 200).unwrap();
+        let canvas = Canvas::new(Kind::Isotropic, domain.planar(), &field, 200).unwrap();
         let refined = canvas.refined(&field, &[VertexId(7)]).unwrap();
         assert!(refined.kind() == Kind::Isotropic && refined.vertex_count() > 201);
         assert_eq!(refined.embedded().positions[..200], canvas.embedded().positions[..]);

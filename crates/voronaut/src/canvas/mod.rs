@@ -34,7 +34,6 @@ pub(crate) use refine::COARSE;
 pub use star_set::{StarFigures, StarSet};
 pub use way::Way;
 
-use crate::domain::Domain;
 use crate::error::{Result, named};
 use crate::geodesic::{Graph, bowed_chord};
 use crate::geometry::Point;
@@ -200,15 +199,15 @@ impl<E> Canvas<E> {
 }
 
 impl Canvas {
-    /// The intrinsic canvas: refines the domain's triangulation to about `vertices` vertices, evenly in the metric,
+    /// The intrinsic canvas: refines a domain's triangulation to about `vertices` vertices, evenly in the metric,
     /// takes metric lengths by quadrature, and flips by lengths alone until it is intrinsic Delaunay.
     ///
     /// It has more vertices only if the domain itself has, or where lengths had to be repaired.
     ///
     /// # Errors
     /// [`crate::Error::Metric`] where the metric is not positive definite at a vertex.
-    pub fn intrinsic(domain: &Domain, field: &dyn MetricField, vertices: usize) -> Result<Self> {
-        Self::new(Kind::Intrinsic, domain, field, vertices)
+    pub fn intrinsic(planar: &Planar, field: &dyn MetricField, vertices: usize) -> Result<Self> {
+        Self::new(Kind::Intrinsic, planar, field, vertices)
     }
 
     /// The isotropic one of [`Canvas::new`] with as many vertices as it takes until no circumradius exceeds so many `isotropic_size`s
@@ -217,10 +216,10 @@ impl Canvas {
     ///
     /// # Errors
     /// As for [`Canvas::intrinsic`].
-    pub(crate) fn isotropic_sized(domain: &Domain, field: &dyn MetricField, sizes: f64) -> Result<Self> {
+    pub(crate) fn isotropic_sized(planar: &Planar, field: &dyn MetricField, sizes: f64) -> Result<Self> {
         let mut counters = CanvasCounters::default();
         let until = Until { vertices: usize::MAX, sizes };
-        let planar = isotropic::refine(domain.planar().clone(), field, until, &mut counters)?;
+        let planar = isotropic::refine(planar.clone(), field, until, &mut counters)?;
         Self::measured(renumbered(&planar), field, Kind::Isotropic, counters)
     }
 
@@ -236,8 +235,8 @@ impl Canvas {
     ///
     /// # Errors
     /// As for [`Canvas::intrinsic`].
-    pub fn new(kind: Kind, domain: &Domain, field: &dyn MetricField, vertices: usize) -> Result<Self> {
-        Self::made(kind, domain.planar().clone(), field, COARSE, vertices)
+    pub fn new(kind: Kind, planar: &Planar, field: &dyn MetricField, vertices: usize) -> Result<Self> {
+        Self::made(kind, planar.clone(), field, COARSE, vertices)
     }
 
     /// [`Canvas::new`] from an embedded triangulation of seeds, which may cover a part of a domain only. Its vertices are vertices of

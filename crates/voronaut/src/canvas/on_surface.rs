@@ -5,9 +5,9 @@ use super::surface_stars::star_set;
 use super::{Canvas, CanvasCounters, Kind, flip};
 use crate::error::{Error, Result};
 use crate::geometry::{Aabb3, Point3};
+use crate::manifold::surface::metric::SurfaceMetric;
+use crate::manifold::{Manifold, Place};
 use crate::mesh::Mesh;
-use crate::surface::metric::SurfaceMetric;
-use crate::surface::{Input, Place, Surface};
 use crate::triangulation::VertexId;
 
 impl<'s> Canvas<Draped<'s>> {
@@ -23,7 +23,7 @@ impl<'s> Canvas<Draped<'s>> {
     /// are one.
     pub fn on_surface(
         kind: Kind,
-        input: &'s Input,
+        input: &'s Manifold,
         metric: &'s dyn SurfaceMetric,
         vertices: usize,
         seeds: &[Place],
@@ -87,7 +87,7 @@ fn spread(cell: u32) -> u32 {
 /// # Errors
 /// [`Error::Metric`](crate::Error::Metric) where the metric is not positive definite at a vertex.
 pub(crate) fn even_on_surface<'s>(
-    input: &'s Input,
+    input: &'s Manifold,
     metric: &'s dyn SurfaceMetric,
     vertices: usize,
 ) -> Result<Draped<'s>> {
@@ -97,12 +97,12 @@ pub(crate) fn even_on_surface<'s>(
 }
 
 impl Draped<'_> {
-    /// As a surface of its own: every face a triangle.
+    /// As one of its own: every face a triangle.
     ///
     /// # Errors
     /// [`Error::Domain`](crate::Error::Domain) of faces without area.
-    pub(crate) fn to_surface(&self) -> Result<Surface> {
-        Surface::new(&Mesh {
+    pub(crate) fn to_manifold(&self) -> Result<Manifold> {
+        Manifold::of(&Mesh {
             points: (0..self.topology.vertex_slots() as u32).map(|v| self.position(VertexId(v)).to_array()).collect(),
             triangles: self.topology.faces().map(|f| self.topology.corners(f).map(|v| v.0)).collect(),
             ..Mesh::default()

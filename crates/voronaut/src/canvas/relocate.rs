@@ -296,8 +296,8 @@ mod tests {
     use super::*;
     use crate::canvas::star_set::Stars;
     use crate::canvas::{COARSE, CanvasCounters, refine};
-    use crate::domain::Domain;
     use crate::geometry::Point;
+    use crate::manifold::domain::Domain;
     use crate::metric::MetricField;
     use crate::planar::Planar;
 

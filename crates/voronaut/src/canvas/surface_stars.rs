@@ -147,21 +147,21 @@ mod tests {
     use super::*;
     use crate::canvas::Kind;
     use crate::geometry::Tensor3;
+    use crate::manifold::Manifold;
+    use crate::manifold::surface::metric::Constant;
     use crate::mesh::Mesh;
-    use crate::surface::metric::Constant;
-    use crate::surface::{Input, Surface};
 
     const UNIFORM: Constant = Constant(Tensor3::IDENTITY);
 
     /// A square of the plane x + z = 0, one by root two.
-    fn slope() -> Input {
+    fn slope() -> Manifold {
         let points = vec![[0.0, 0.0, 0.0], [1.0, 0.0, -1.0], [1.0, 1.0, -1.0], [0.0, 1.0, 0.0]];
         let mesh = Mesh { points, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() };
-        Input::new(Surface::new(&mesh).unwrap(), None)
+        Manifold::of(&mesh).unwrap()
     }
 
     /// Places of a slope that follow no pattern.
-    fn scattered(input: &Input) -> Vec<crate::surface::Place> {
+    fn scattered(input: &Manifold) -> Vec<crate::manifold::Place> {
         let at = |i: u32| ((0.618 * f64::from(i)).fract(), (0.754_877 * f64::from(i)).fract());
         (1..300).map(at).map(|(x, y)| input.closest(Point3::new(x, y, -x)).unwrap()).collect()
     }
@@ -196,7 +196,7 @@ mod tests {
 
     #[test]
     fn edges_of_stars_are_as_long_as_arcs_over_them() {
-        let input = Input::shape("sphere:1", None).unwrap();
+        let input = Manifold::shape("sphere:1", None).unwrap();
         let (canvas, _) = Canvas::on_surface(Kind::StarSet, &input, &UNIFORM, 4000, &[]).unwrap();
         let (graph, draped) = (canvas.surface_graph(), canvas.draped());
         let mut worst: f64 = 0.0;
@@ -212,7 +212,7 @@ mod tests {
 
     #[test]
     fn vertices_see_each_other_by_rotations() {
-        let input = Input::shape("sphere:1", None).unwrap();
+        let input = Manifold::shape("sphere:1", None).unwrap();
         let (canvas, _) = Canvas::on_surface(Kind::StarSet, &input, &UNIFORM, 2_000, &[]).unwrap();
         let (graph, draped) = (canvas.surface_graph(), canvas.draped());
         let sight = graph.sight();

@@ -3,7 +3,7 @@
 use super::draped::Draped;
 use crate::geodesic::taut;
 use crate::geometry::{Point3, Tensor3};
-use crate::surface::Place;
+use crate::manifold::Place;
 use crate::triangulation::VertexId;
 
 /// A way on a surface.
@@ -29,7 +29,7 @@ impl Draped<'_> {
         let on: Vec<([VertexId; 2], f64)> =
             [([from, from], 0.0)].into_iter().chain(inner).chain([([to, to], 0.0)]).collect();
         let way = self.way_along(on)?;
-        let is_exact = self.input().implicit.is_none();
+        let is_exact = self.input().equation().is_none();
         Some(if is_exact { Way { length: found.length, ..way } } else { way })
     }
 
@@ -42,11 +42,11 @@ impl Draped<'_> {
                 return Some(*self.place(a));
             }
             let p = self.position(a).lerp(self.position(b), t);
-            if self.input().implicit.is_some() {
+            if self.input().equation().is_some() {
                 return self.input().lift(self.place(a), p);
             }
             let h = self.topology().edge_between(a, b)?;
-            Some(self.input().surface.closest_on(self.home(h.face()), p))
+            Some(self.input().closest_on(self.home(h.face()), p))
         };
         let places: Vec<Place> = on.iter().map(place).collect::<Option<_>>()?;
         let tensors: Vec<Tensor3> = places.iter().map(|place| self.metric().at(place)).collect();
@@ -71,17 +71,18 @@ mod tests {
     use super::*;
     use crate::canvas::{Canvas, Kind};
     use crate::geometry::Point;
+    use crate::manifold::Manifold;
+    use crate::manifold::surface::Surface;
+    use crate::manifold::surface::metric::Constant;
     use crate::mesh::Mesh;
-    use crate::surface::metric::Constant;
-    use crate::surface::{Input, Surface};
 
     /// A strip one wide and two long, folded upwards in the middle.
-    fn folded() -> Input {
+    fn folded() -> Manifold {
         let points = [[0.0, 0.0], [0.0, 1.0], [0.6, 0.0], [0.6, 1.0], [1.2, 0.0], [1.2, 1.0]];
         let height = |x: f64| 0.8 - (0.8 - x * 4.0 / 3.0).abs();
         let points = points.map(|[x, y]| [x, y, height(x)]).to_vec();
         let triangles = vec![[0, 2, 1], [1, 2, 3], [2, 4, 3], [3, 4, 5]];
-        Input::new(Surface::new(&Mesh { points, triangles, ..Mesh::default() }).unwrap(), None)
+        Manifold::new(Surface::new(&Mesh { points, triangles, ..Mesh::default() }).unwrap(), None)
     }
 
     #[test]
@@ -113,7 +114,7 @@ mod tests {
 
     #[test]
     fn ways_on_a_sphere_are_great_circles() {
-        let (input, metric) = (Input::shape("sphere:1", None).unwrap(), Constant(Tensor3::IDENTITY));
+        let (input, metric) = (Manifold::shape("sphere:1", None).unwrap(), Constant(Tensor3::IDENTITY));
         let seeds = [(1.0, 0.3, 0.2), (-0.4, 0.9, 0.1), (0.2, -0.5, -1.0)].map(|(x, y, z)| {
             let p = Point3::default() + (Point3::new(x, y, z) - Point3::default()).unit().unwrap();
             input.closest(p).unwrap()

@@ -7,10 +7,10 @@ use crate::canvas::{Canvas, Draped};
 use crate::diagram::SurfaceDiagram;
 use crate::geodesic::{Geodesic, Marching, Sources, gauss_curvature};
 use crate::geometry::{Point, Vector};
+use crate::manifold::{Chart, Place};
 use crate::metric::Scaled;
 use crate::net::Net;
 use crate::parallel::prelude::*;
-use crate::surface::{Chart, Place};
 use crate::triangulation::{HalfEdge, VertexId};
 use std::f64::consts::PI;
 
@@ -34,12 +34,12 @@ impl Certificate {
 fn convexity(diagram: &SurfaceDiagram, sights: &OnSurface, net: &Net<Place>, epsilon: f64) -> Convexity {
     let input = diagram.canvas().draped().input();
     let [curvature, total] = curvatures(diagram.canvas().draped(), epsilon);
-    let has_border = input.seams.whole().borders > 0;
+    let has_border = input.whole().borders > 0;
     let injectivity = if has_border { f64::NAN } else { injectivity(diagram, epsilon) };
     let of_curvature = if curvature > 0.0 { 0.5 * PI / curvature.sqrt() } else { f64::INFINITY };
     let open = match () {
         () if has_border => Some("the surface has a border, where loops are not looked for"),
-        () if input.implicit.is_none() => {
+        () if input.equation().is_none() => {
             Some("the curvature: the surface has no equation, and its triangles have it at their vertices only")
         }
         () => None,
@@ -59,7 +59,7 @@ fn convexity(diagram: &SurfaceDiagram, sights: &OnSurface, net: &Net<Place>, eps
 /// The greatest Gauss curvature at samples, and the integral of the positive ones. `unit` is a length of the metric, over a few hundredths
 /// of which differences are taken.
 fn curvatures(draped: &Draped, unit: f64) -> [f64; 2] {
-    if draped.input().implicit.is_none() {
+    if draped.input().equation().is_none() {
         return [f64::NAN; 2];
     }
     let t = draped.topology();

@@ -5,9 +5,9 @@ use crate::canvas::Homes;
 use crate::diagram::{Diagram, SurfaceDiagram};
 use crate::geodesic::{Fineness, Paths};
 use crate::geometry::Point;
+use crate::manifold::{Chart, Place};
 use crate::metric::MetricField;
 use crate::net::SeedsOnSurface;
-use crate::surface::{Chart, Place};
 use crate::triangulation::{FaceId, VertexId};
 
 /// The seeds of a diagram, to be seen from around some of them.

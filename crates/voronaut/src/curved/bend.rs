@@ -4,9 +4,9 @@ use super::Away;
 use super::bezier::curve_of_nodes;
 use super::elements::{Elements, Hold};
 use super::newton::{Aim, displace};
-use crate::domain::Splines;
 use crate::error::Result;
 use crate::geometry::Point;
+use crate::manifold::domain::Splines;
 use crate::progress::Progress;
 
 /// Steps until what is not on its curve stays away, at most: each goes half of the way at least where triangles allow it.

@@ -40,9 +40,9 @@ pub(crate) use rules::{AREA, GAUSS, Place, Rule};
 pub(crate) use tempered::Tempered;
 pub(crate) use term::curve_at;
 
-use crate::domain::Splines;
 use crate::error::Result;
 use crate::geometry::Point;
+use crate::manifold::domain::Splines;
 use crate::mesh::Mesh;
 use crate::metric::{MetricField, Norm, ScalarField};
 use crate::optimise::{Patience, Polished};

@@ -6,9 +6,9 @@ use super::jacobian::bound;
 use super::slide::Sliding;
 use crate::geometry::Point3;
 use crate::lists::distinct;
+use crate::manifold::Manifold;
 use crate::mesh::{Curved, Edges, Mesh};
 use crate::parallel::prelude::*;
-use crate::surface::Input;
 
 /// Nodes come back halfway to the straight triangle where it would fold, at most so many times, and all the way then.
 const BARRED: i32 = 5;
@@ -17,7 +17,7 @@ const BARRED: i32 = 5;
 /// they slide ([`Sliding`]). Nodes of an edge on the border keep the coordinates that its ends have in common. Where a triangle would fold, seen along its
 /// normal, or the surface is not found, nodes stay nearer to the straight one; returns how many do, and where the first is. The distance to the surface is
 /// of order `order + 1` in the length of edges, and `order + 2` where it bends along them.
-pub(crate) fn onto_surface(mesh: &mut Mesh, input: &Input, order: usize) -> Option<(usize, Point3)> {
+pub(crate) fn onto_surface(mesh: &mut Mesh, input: &Manifold, order: usize) -> Option<(usize, Point3)> {
     let (straight, pins, triangles) = straight_nodes(mesh, order);
     let mut landed: Vec<Option<Point3>> =
         (0..straight.len()).into_par_iter().map(|n| input.onto(straight[n], pins[n])).collect();

@@ -6,10 +6,10 @@
 
 use super::bezier::{MOST, bernstein, exponents, points_of_nodes};
 use crate::geometry::{Point, Point3, TangentPlane, Vector3};
+use crate::manifold::Manifold;
 use crate::mesh::Mesh;
 use crate::parallel::prelude::*;
 use crate::sparse::conjugate_gradients;
-use crate::surface::Input;
 
 /// Gauss and Newton's steps, and steps of conjugate gradients for each. On tori of 250 to 16,000 vertices two and 20 leave triangles of order 2 as near but
 /// for a twentieth, those of order 3 up to 1.8 times as far away.
@@ -22,7 +22,7 @@ const SHARE: f64 = 0.1;
 /// The triangles whose nodes slide.
 pub(super) struct Sliding<'a> {
     pub(super) mesh: &'a Mesh,
-    pub(super) input: &'a Input,
+    pub(super) input: &'a Manifold,
     pub(super) order: usize,
     /// The numbers of each triangle's nodes, one triangle after the other.
     pub(super) triangles: &'a [u32],
@@ -110,7 +110,7 @@ impl Sliding<'_> {
 
     /// The distance to the surface, to first order, and its gradient.
     fn normal(&self, p: Point3) -> Option<(f64, Vector3)> {
-        let jet = self.input.implicit.as_ref()?.jet(p);
+        let jet = self.input.equation()?.jet(p);
         let (distance, normal) = (jet.value / jet.gradient.norm(), jet.gradient.unit()?);
         distance.is_finite().then_some((distance, normal))
     }

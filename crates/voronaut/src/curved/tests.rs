@@ -1,7 +1,7 @@
 use super::bezier::bernstein;
 use super::*;
-use crate::domain::{Domain, shape};
 use crate::geometry::{Tensor, Vector};
+use crate::manifold::domain::{Domain, shape};
 use crate::metric::Scaled;
 use crate::progress::Silent;
 use crate::recipe::{MeshOptions, mesh};

@@ -1,17 +1,17 @@
 //! From the nerve to a mesh: its straight realisation (RR-9103, sections 11 and 14: SRDT), and the canvas as a mesh.
 
 use super::{Diagram, Ground, Nerve, NerveTriangle};
-use crate::domain::Domain;
+use crate::manifold::domain::Segment;
 use crate::mesh::Mesh;
 use crate::triangulation::{VertexId, smallest_first};
 use std::collections::{BTreeMap, BTreeSet};
 
 impl Diagram<'_> {
     /// Triangles of seeds (those of the nerve, or what became of them) with straight edges: vertex i is seed i, and a
-    /// triangle that comes out clockwise is one that straight edges invert. Edges whose border witness lies on the domain's
-    /// boundary carry its label, as far as a triangle has them. A triangle has the region label of its witness, or, where
+    /// triangle that comes out clockwise is one that straight edges invert. Edges whose border witness lies on one of the domain's
+    /// segments carry its label, as far as a triangle has them. A triangle has the region label of its witness, or, where
     /// the nerve does not have it, of a neighbour. A removed seed is no vertex of any triangle, at (0, 0).
-    pub fn to_mesh(&self, triangles: Vec<[u32; 3]>, nerve: &Nerve, domain: &Domain) -> Mesh {
+    pub fn to_mesh(&self, triangles: Vec<[u32; 3]>, nerve: &Nerve, segments: &[Segment]) -> Mesh {
         let mut mesh = Mesh { triangle_labels: self.regions(&triangles, nerve), triangles, ..Mesh::default() };
         for colour in 0..self.colours() as u32 {
             let p = self.seed(colour).unwrap_or_default();
@@ -24,7 +24,7 @@ impl Diagram<'_> {
             let side = [[a, b], [b, a]].into_iter().find(|side| sides.contains(side));
             if let (Some(side), Some(h)) = (side, edge.border) {
                 let segment = self.ground.canvas.topology().constraint(h);
-                let label = segment.and_then(|c| domain.pslg().segments.get(c.0 as usize)).map_or(0, |s| s.label);
+                let label = segment.and_then(|c| segments.get(c.0 as usize)).map_or(0, |s| s.label);
                 mesh.edges.push(side);
                 mesh.edge_labels.push(label);
             }

@@ -257,8 +257,8 @@ mod tests {
     use super::*;
     use crate::canvas::Canvas;
     use crate::diagram::test_diagrams::{plate_with_hole, seeds_of};
-    use crate::domain::Domain;
     use crate::error::Result;
+    use crate::manifold::domain::Domain;
     use crate::metric::{MetricField, Swirl};
 
     fn area(points: &[Point]) -> f64 {
@@ -267,7 +267,7 @@ mod tests {
     }
 
     fn of_seeds(domain: &Domain, field: &dyn MetricField, seeds: &[Point], vertices: usize) -> Result<Cells> {
-        let canvas = Canvas::intrinsic(domain, field, vertices)?;
+        let canvas = Canvas::intrinsic(domain.planar(), field, vertices)?;
         Ok(Diagram::new(&canvas, field, seeds)?.to_cells())
     }
 

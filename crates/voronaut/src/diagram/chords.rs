@@ -112,11 +112,11 @@ mod tests {
     use crate::diagram::SurfaceDiagram;
     use crate::diagram::test_diagrams::{plate_with_hole, seeds_of};
     use crate::diagram::{Diagram, Kind};
-    use crate::domain::Domain;
     use crate::geodesic::Method;
     use crate::geometry::{Point, Point3, TangentPlane, Tensor, Tensor3, Vector3};
+    use crate::manifold::Manifold;
+    use crate::manifold::domain::Domain;
     use crate::metric::{MetricField, Swirl};
-    use crate::surface::Input;
 
     const RIVALS: [(Kind, Chords); 2] =
         [(Kind::DuWang, Chords::InMetricOfPlace), (Kind::LabelleShewchuk, Chords::InMetricOfSeed)];
@@ -132,7 +132,7 @@ mod tests {
     #[test]
     fn colours_are_those_of_all_pairs_compared_even_through_walls() {
         let (domain, swirl) = (plate_with_hole(), Swirl::default());
-        let canvas = Canvas::intrinsic(&domain, &swirl, 4000).unwrap();
+        let canvas = Canvas::intrinsic(domain.planar(), &swirl, 4000).unwrap();
         let seeds = seeds_of(&domain, 60);
         for (kind, chords) in RIVALS {
             let diagram = Diagram::of_kind(kind, &canvas, &swirl, &seeds, Method::March).unwrap();
@@ -157,7 +157,7 @@ mod tests {
     fn all_kinds_agree_in_a_uniform_metric() {
         let domain = Domain::shape("rect:-2,-2,2,2").unwrap();
         let uniform = |_: Point| Tensor::new(9.0, 2.0, 1.0);
-        let canvas = Canvas::intrinsic(&domain, &uniform, 6000).unwrap();
+        let canvas = Canvas::intrinsic(domain.planar(), &uniform, 6000).unwrap();
         let seeds = seeds_of(&plate_with_hole(), 50);
         let made = |kind| Diagram::of_kind(kind, &canvas, &uniform, &seeds, Method::March).unwrap();
         let [ours, du_wang, labelle] = Kind::ALL.map(made);
@@ -180,10 +180,9 @@ mod tests {
 
     #[test]
     fn on_a_surface_colours_are_those_of_all_pairs_compared() {
-        let input = Input::shape("sphere:1", None).unwrap();
+        let input = Manifold::shape("sphere:1", None).unwrap();
         let metric = |p: Point3| Tensor3::from_disk([9.0 + 8.0 * p.y, 1.0, 2.0, 0.0, p.x, 3.0]);
-        let places: Vec<_> =
-            input.surface.topology().vertices().step_by(9).map(|v| input.surface.place_of(v).unwrap()).collect();
+        let places: Vec<_> = input.topology().vertices().step_by(9).map(|v| input.place_of(v).unwrap()).collect();
         let (canvas, at) = Canvas::on_surface(crate::canvas::Kind::Intrinsic, &input, &metric, 3000, &places).unwrap();
         let frozen = |v: VertexId| (&canvas).frozen(v);
         for (kind, chords) in RIVALS {
@@ -212,7 +211,7 @@ mod tests {
     #[test]
     fn changed_as_if_made_anew() {
         let (domain, swirl) = (plate_with_hole(), Swirl::default());
-        let canvas = Canvas::intrinsic(&domain, &swirl, 3000).unwrap();
+        let canvas = Canvas::intrinsic(domain.planar(), &swirl, 3000).unwrap();
         let mut seeds = seeds_of(&domain, 30);
         for (kind, _) in RIVALS {
             let mut diagram = Diagram::of_kind(kind, &canvas, &swirl, &seeds[..29], Method::March).unwrap();
@@ -233,7 +232,7 @@ mod tests {
     #[test]
     fn any_number_of_threads_gives_the_same_bits() {
         let (domain, swirl) = (plate_with_hole(), Swirl::default());
-        let canvas = Canvas::intrinsic(&domain, &swirl, 6000).unwrap();
+        let canvas = Canvas::intrinsic(domain.planar(), &swirl, 6000).unwrap();
         let seeds = seeds_of(&domain, 200);
         for (kind, _) in RIVALS {
             let colours = |threads| {
@@ -251,7 +250,7 @@ mod tests {
         let domain = Domain::shape("rect:0,0,1,1").unwrap();
         let seed = Point::new(0.3, 0.4);
         let pierced = |p: Point| if p == seed { Tensor::new(1.0, 2.0, 1.0) } else { Tensor::IDENTITY };
-        let canvas = Canvas::intrinsic(&domain, &pierced, 100).unwrap();
+        let canvas = Canvas::intrinsic(domain.planar(), &pierced, 100).unwrap();
         for (kind, _) in RIVALS {
             let refused = Diagram::of_kind(kind, &canvas, &pierced, &[seed], Method::March).err().unwrap();
             assert!(refused.to_string().contains("not positive definite"), "{refused}");

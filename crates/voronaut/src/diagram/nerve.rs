@@ -204,7 +204,7 @@ mod tests {
     #[test]
     fn witnesses_have_the_colours_of_what_they_witness() {
         let (domain, swirl) = (plate_with_hole(), Swirl::default());
-        let canvas = Canvas::intrinsic(&domain, &swirl, 4000).unwrap();
+        let canvas = Canvas::intrinsic(domain.planar(), &swirl, 4000).unwrap();
         let diagram = Diagram::new(&canvas, &swirl, &seeds_of(&domain, 40)).unwrap();
         let witnesses = diagram.witnesses();
         let colours = |f| {

@@ -6,8 +6,8 @@ use super::{Kind, Measure, SurfaceDiagram};
 use crate::canvas::{Canvas, Draped};
 use crate::error::Result;
 use crate::geodesic::Method;
+use crate::manifold::Place;
 use crate::parallel::prelude::*;
-use crate::surface::Place;
 use crate::triangulation::VertexId;
 
 impl<'a> SurfaceDiagram<'a> {

@@ -56,15 +56,15 @@ mod tests {
     use crate::canvas::Canvas;
     use crate::diagram::Kind;
     use crate::diagram::test_diagrams::{plate_with_hole, seeds_of};
-    use crate::domain::Domain;
     use crate::geodesic::Method;
     use crate::geometry::{Point, Tensor};
+    use crate::manifold::domain::Domain;
     use crate::metric::Swirl;
 
     #[test]
     fn islands_are_counted_one_by_one() {
         let domain = Domain::shape("rect:0,0,4,1").unwrap();
-        let canvas = Canvas::intrinsic(&domain, &|_: Point| Tensor::IDENTITY, 4000).unwrap();
+        let canvas = Canvas::intrinsic(domain.planar(), &|_: Point| Tensor::IDENTITY, 4000).unwrap();
         let [first, second] = [Point::new(2.5, 0.3), Point::new(3.5, 0.7)];
         // The left half is 0's, the right one 1's but for two disks; a third is out of reach of everyone.
         let colour = |v: VertexId| {
@@ -95,7 +95,7 @@ mod tests {
     #[test]
     fn the_swirl_makes_orphans_of_chords_and_none_of_geodesics() {
         let (domain, swirl) = (Domain::shape("rect:-2,-2,2,2").unwrap(), Swirl::default());
-        let canvas = Canvas::intrinsic(&domain, &swirl, 20_000).unwrap();
+        let canvas = Canvas::intrinsic(domain.planar(), &swirl, 20_000).unwrap();
         let seeds = seeds_of(&plate_with_hole(), 80);
         let components = Kind::ALL.map(|kind| Diagram::of_kind(kind, &canvas, &swirl, &seeds, Method::March).unwrap());
         let [ours, du_wang, labelle] = components.map(|diagram| {

@@ -95,14 +95,14 @@ mod tests {
     use super::*;
     use crate::canvas::Canvas;
     use crate::diagram::test_diagrams::{plate_with_hole, seeds_of};
-    use crate::domain::Domain;
     use crate::geometry::Tensor;
+    use crate::manifold::domain::Domain;
     use crate::metric::Swirl;
 
     #[test]
     fn paths_end_at_their_seed_and_distances_decrease() {
         let (domain, swirl) = (plate_with_hole(), Swirl::default());
-        let canvas = Canvas::intrinsic(&domain, &swirl, 4000).unwrap();
+        let canvas = Canvas::intrinsic(domain.planar(), &swirl, 4000).unwrap();
         let diagram = Diagram::new(&canvas, &swirl, &seeds_of(&domain, 12)).unwrap();
         let paths = diagram.paths();
         for from in seeds_of(&domain, 300) {
@@ -129,7 +129,7 @@ mod tests {
         let domain = plate_with_hole();
         let tensor = Tensor::new(2.0, 0.3, 1.0);
         let field = move |_: Point| tensor;
-        let canvas = Canvas::intrinsic(&domain, &field, 4000).unwrap();
+        let canvas = Canvas::intrinsic(domain.planar(), &field, 4000).unwrap();
         let seeds = [Point::new(-1.0, 0.1), Point::new(1.0, -0.05)];
         let diagram = Diagram::new(&canvas, &field, &seeds).unwrap();
         let over = |corners: [Point; 2]| {
@@ -147,7 +147,7 @@ mod tests {
     fn geodesics_of_the_half_plane_have_their_length() {
         let domain = Domain::shape("rect:-2,0.5,2,3").unwrap();
         let field = |p: Point| Tensor::isotropic(p.y);
-        let canvas = Canvas::intrinsic(&domain, &field, 6000).unwrap();
+        let canvas = Canvas::intrinsic(domain.planar(), &field, 6000).unwrap();
         let seeds: Vec<Point> =
             (0..14_u32).map(|i| Point::new(f64::from(i % 4) - 1.6, 1.2 + 0.45 * f64::from(i / 4))).collect();
         let diagram = Diagram::new(&canvas, &field, &seeds).unwrap();
@@ -163,7 +163,7 @@ mod tests {
     #[test]
     fn geodesic_edges_meet_at_seeds_only() {
         let (domain, swirl) = (plate_with_hole(), Swirl::default());
-        let canvas = Canvas::intrinsic(&domain, &swirl, 12_000).unwrap();
+        let canvas = Canvas::intrinsic(domain.planar(), &swirl, 12_000).unwrap();
         let seeds = seeds_of(&domain, 60);
         let diagram = Diagram::new(&canvas, &swirl, &seeds).unwrap();
         let edges: Vec<[u32; 2]> = diagram.sharp_nerve().edges.iter().map(|e| e.colours).collect();

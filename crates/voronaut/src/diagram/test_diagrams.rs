@@ -1,7 +1,7 @@
 //! A domain and seeds for the tests of this module.
 
-use crate::domain::Domain;
 use crate::geometry::Point;
+use crate::manifold::domain::Domain;
 use crate::test_cases::plate;
 
 /// A square from (-2, -2) to (2, 2) with a square hole from (-0.5, -0.5) to (0.5, 0.5).

@@ -2,11 +2,9 @@
 //! it was done; what would not be embedded is not done.
 
 use super::{Dual, Effort, Kind, LIMIT, Moving, POOR, TIE};
-use crate::domain::Domain;
 use crate::geodesic::Margin;
 use crate::geometry::{Point, Tensor, Vector};
 use crate::lists::in_order;
-use crate::mesh::Mesh;
 use crate::parallel::prelude::*;
 use crate::planar::Planar;
 use crate::triangulation::{Constraint, FaceId, Flipping, HalfEdge, Triangulation, VertexId};
@@ -110,18 +108,8 @@ impl Dual<'_> {
         self.flip_around(v, Effort::Local);
     }
 
-    /// The mesh, by `Domain::mesh_of`.
-    pub(crate) fn to_mesh(&self, domain: &Domain) -> Mesh {
-        domain.mesh_of(self.planar(), |v| self.corner(v))
-    }
-
-    /// The number in [`Dual::to_mesh`] of each vertex by id; `u32::MAX` of those that are none.
-    pub(crate) fn numbering(&self, domain: &Domain) -> Vec<u32> {
-        domain.numbering(self.planar(), |v| self.corner(v))
-    }
-
     /// The point of the domain's graph that a vertex is.
-    fn corner(&self, v: VertexId) -> Option<u32> {
+    pub(crate) fn corner(&self, v: VertexId) -> Option<u32> {
         if let Kind::Corner(point) = self.kind(v) { Some(point) } else { None }
     }
 

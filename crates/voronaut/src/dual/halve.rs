@@ -60,8 +60,8 @@ impl Dual<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::domain::Domain;
     use crate::geometry::Tensor;
+    use crate::manifold::domain::Domain;
     use crate::metric::Scaled;
     use crate::progress::Silent;
     use crate::sampling::{Fill, refine};
@@ -70,7 +70,7 @@ mod tests {
     fn long_edges_become_two_of_half_the_length() {
         let domain = Domain::shape("rect:0,0,1,1").unwrap();
         let field = |p: Point| Tensor::new(100.0, 30.0, 100.0) * (1.0 + p.x);
-        let mut dual = Dual::new(&domain, Scaled { field: &field, factor: 1.0 }).unwrap();
+        let mut dual = Dual::new(domain.corners(), Scaled { field: &field, factor: 1.0 }).unwrap();
         refine(&mut dual, Fill::AtMost(60), &Silent).unwrap();
         let edges: Vec<f64> = dual.topology().edges().map(|h| dual.edge_length(h)).collect();
         let (before, long) = (dual.vertex_count(), edges.iter().filter(|length| **length > 1.0).count());
@@ -93,7 +93,7 @@ mod tests {
     fn both_halves_are_equally_long() {
         let domain = Domain::shape("rect:0,0,1,1").unwrap();
         let field = |p: Point| Tensor::isotropic(1.0 / (1.0 + 2.0 * p.x));
-        let dual = Dual::new(&domain, Scaled { field: &field, factor: 1e6 }).unwrap();
+        let dual = Dual::new(domain.corners(), Scaled { field: &field, factor: 1e6 }).unwrap();
         let bottom = dual.topology().edges().find(|&h| dual.planar().ends(h).iter().all(|p| p.y == 0.0)).unwrap();
         // The speed along it grows as 1 + 2 x.
         let x = dual.middle(bottom).x;

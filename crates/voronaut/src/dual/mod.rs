@@ -22,11 +22,11 @@ use moving::Saved;
 pub(crate) use moving::{Moving, sites};
 pub(crate) use on_surface::SurfaceDual;
 
-use crate::domain::Domain;
 use crate::error::{Error, Result};
 use crate::geodesic::{LocalMetric, Paths, chord_between, hermite, is_unit};
 use crate::geometry::{Point, Readable, Tensor};
 use crate::in_circle::Tests;
+use crate::manifold::domain::Corners;
 use crate::metric::Scaled;
 use crate::parallel::prelude::*;
 use crate::planar::{Location, Planar};
@@ -104,15 +104,15 @@ impl<'a> Dual<'a> {
     ///
     /// # Errors
     /// The metric is not positive definite at a corner.
-    pub(crate) fn new(domain: &Domain, field: Scaled<'a>) -> Result<Self> {
-        let planar = domain.planar().clone();
-        let kinds = domain.sources().iter().map(|s| s.map_or(Kind::Free, Kind::Corner)).collect();
+    pub(crate) fn new(corners: Corners, field: Scaled<'a>) -> Result<Self> {
+        let planar = corners.planar.clone();
+        let kinds = corners.sources.iter().map(|s| s.map_or(Kind::Free, Kind::Corner)).collect();
         let mut dual = Self {
             field,
             locals: vec![LocalMetric::default(); planar.positions.len()],
             planar,
             kinds,
-            required: domain.pslg().segments.iter().map(|s| s.required).collect(),
+            required: corners.segments.iter().map(|s| s.required).collect(),
             touched: Vec::new(),
             lawson: Lawson::default(),
             tests: Tests::default(),

@@ -293,8 +293,8 @@ impl Moving for Dual<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::domain::Domain;
     use crate::geometry::from_frame;
+    use crate::manifold::domain::Domain;
     use crate::metric::{Scaled, Swirl};
     use crate::progress::Silent;
     use crate::sampling::{Fill, Plan, Target, refine, sample_segments};
@@ -305,7 +305,7 @@ mod tests {
         let made = || {
             let plan = Plan::new(domain.clone(), Vec::new(), &field, Target::Vertices(300)).unwrap();
             let scaled = Scaled { field: &field, factor: plan.scale_for(300.0) };
-            let mut dual = Dual::new(&domain, scaled).unwrap();
+            let mut dual = Dual::new(domain.corners(), scaled).unwrap();
             sample_segments(&mut dual, &plan.edges, &plan.arcs, scaled.factor, 0);
             refine(&mut dual, Fill::AtMost(300), &Silent).unwrap();
             Moving::measure(&mut dual);

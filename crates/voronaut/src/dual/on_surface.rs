@@ -11,11 +11,11 @@ use crate::elementary::Elementary;
 use crate::error::{Error, Result};
 use crate::geodesic::{LocalMetric, STILL};
 use crate::geometry::{Point, Point3, Seen, TangentPlane, Tensor, Tensor3, Vector, Vector3};
+use crate::manifold::surface::metric::SurfaceMetric;
+use crate::manifold::{Chart, Manifold, Place};
 use crate::metric::Scaled;
 use crate::parallel::prelude::*;
 use crate::progress::Sketch;
-use crate::surface::metric::SurfaceMetric;
-use crate::surface::{Chart, Input, Place};
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
 
 /// The least cosine between a triangle's normal and those of the surface at its corners.
@@ -31,7 +31,7 @@ const ALIKE: f64 = 1.5;
 
 /// The Riemannian Delaunay triangulation of seeds on a surface, with straight edges in space: the mesh in the making.
 pub(crate) struct SurfaceDual<'a> {
-    pub(super) input: &'a Input,
+    pub(super) input: &'a Manifold,
     pub(super) metric: &'a dyn SurfaceMetric,
     pub(super) factor: f64,
     pub(super) state: State,
@@ -46,7 +46,7 @@ impl<'a> SurfaceDual<'a> {
     /// # Errors
     /// [`Error::Metric`] where the metric is not positive definite at a seed.
     pub(crate) fn new(
-        input: &'a Input,
+        input: &'a Manifold,
         metric: &'a dyn SurfaceMetric,
         factor: f64,
         places: Vec<Place>,
@@ -82,7 +82,7 @@ impl<'a> SurfaceDual<'a> {
     }
 
     /// The surface.
-    pub(crate) fn input(&self) -> &'a Input {
+    pub(crate) fn input(&self) -> &'a Manifold {
         self.input
     }
 

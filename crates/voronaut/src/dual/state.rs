@@ -3,8 +3,8 @@
 use super::Kind;
 use crate::geodesic::LocalMetric;
 use crate::geometry::{Point3, TangentPlane, Tensor3, Vector3};
+use crate::manifold::Place;
 use crate::parallel::copy_over;
-use crate::surface::Place;
 use crate::triangulation::Triangulation;
 
 /// What moves and flips change. Vertex i of the topology is seed i.

@@ -270,15 +270,15 @@ impl Leaning {
 mod tests {
     use super::*;
     use crate::geometry::{Point3, Tensor3};
+    use crate::manifold::Manifold;
+    use crate::manifold::surface::metric::Constant;
     use crate::mesh::Mesh;
-    use crate::surface::metric::Constant;
-    use crate::surface::{Input, Surface};
 
     #[test]
     fn what_is_nearly_flat_is_rounded_off() {
         let corners = vec![[-3.0, -3.0, 0.0], [3.0, -3.0, 0.0], [3.0, 3.0, 0.0], [-3.0, 3.0, 0.0]];
         let sheet = Mesh { points: corners, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() };
-        let (input, metric) = (Input::new(Surface::new(&sheet).unwrap(), None), Constant(Tensor3::IDENTITY));
+        let (input, metric) = (Manifold::of(&sheet).unwrap(), Constant(Tensor3::IDENTITY));
         // The third is above the middle of the edge between the first two by next to nothing.
         let seeds = [(-1.0, 0.0), (1.0, 0.0), (0.0, 1e-6), (0.0, 2.0), (0.0, -2.0)];
         let places = seeds.map(|(x, y)| input.closest(Point3::new(x, y, 0.0)).unwrap()).to_vec();
@@ -297,9 +297,9 @@ mod tests {
             [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]].map(|p| p.map(f64::from)).to_vec();
         let triangles = vec![[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
         let octahedron = Mesh { points, triangles, ..Mesh::default() };
-        let input = Input::new(Surface::new(&octahedron).unwrap(), None);
-        let topology = input.surface.topology().clone();
-        let places = topology.vertices().map(|v| input.surface.place_of(v).unwrap()).collect();
+        let input = Manifold::of(&octahedron).unwrap();
+        let topology = input.topology().clone();
+        let places = topology.vertices().map(|v| input.place_of(v).unwrap()).collect();
         let metric = Constant(Tensor3::IDENTITY);
         let mut dual = SurfaceDual::new(&input, &metric, 1.0, places, 0, topology).unwrap();
         // Each edge of the square 0 2 1 3 flips to an edge from 4 to 5.

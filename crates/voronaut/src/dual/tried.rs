@@ -3,7 +3,7 @@
 use super::moving::KEPT;
 use super::state::State;
 use crate::geometry::{Vector, Vector3};
-use crate::surface::Place;
+use crate::manifold::Place;
 use crate::triangulation::VertexId;
 
 /// The last moves of all seeds at once, and the state that those taken back had led to. The way to a place, the metric there and the length of an edge between two
@@ -95,18 +95,18 @@ pub(super) struct Landing {
 mod tests {
     use super::*;
     use crate::dual::{Moving, SurfaceDual};
-    use crate::surface::metric::Sizes;
-    use crate::surface::{Input, sphere};
+    use crate::manifold::Manifold;
+    use crate::manifold::surface::metric::Sizes;
+    use crate::manifold::surface::sphere;
 
     #[test]
     fn the_next_try_finds_what_it_would_find_alone_to_the_last_bit() {
-        let input = Input::new(sphere(1.0, 0.4).unwrap(), None);
+        let input = Manifold::new(sphere(1.0, 0.4).unwrap(), None);
         let size = |i: usize| if i.is_multiple_of(3) { 0.25 } else { 0.6 };
-        let metric =
-            Sizes::Isotropic((0..input.surface.positions().len()).map(size).collect()).field(&input.surface).unwrap();
+        let metric = Sizes::Isotropic((0..input.positions().len()).map(size).collect()).field(input.surface()).unwrap();
         let made = || {
-            let topology = input.surface.topology().clone();
-            let places = topology.vertices().map(|v| input.surface.place_of(v).unwrap()).collect();
+            let topology = input.topology().clone();
+            let places = topology.vertices().map(|v| input.place_of(v).unwrap()).collect();
             let mut dual = SurfaceDual::new(&input, &metric, 1.0, places, 0, topology).unwrap();
             dual.flip_all();
             dual

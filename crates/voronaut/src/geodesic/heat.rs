@@ -207,12 +207,12 @@ mod tests {
     use super::*;
     use crate::canvas::{Canvas, Kind};
     use crate::geometry::{Point3, Tensor3};
-    use crate::surface::Input;
-    use crate::surface::metric::Constant;
+    use crate::manifold::Manifold;
+    use crate::manifold::surface::metric::Constant;
 
     #[test]
     fn sources_are_equally_strong_whatever_area_their_vertices_have() {
-        let (input, metric) = (Input::shape("sphere:1", Some(0.2)).unwrap(), Constant(Tensor3::IDENTITY));
+        let (input, metric) = (Manifold::shape("sphere:1", Some(0.2)).unwrap(), Constant(Tensor3::IDENTITY));
         // The second one is a hundred times smaller than others: around it there are three more.
         let poles = [(0.0, 1.0), (0.0, -1.0), (2e-3, -1.0), (-1e-3, -1.0), (-2e-3, -1.0)];
         let place = |(i, (x, z)): (usize, (f64, f64))| {

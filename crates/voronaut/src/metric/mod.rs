@@ -64,7 +64,7 @@ pub(crate) use scaled::Steadied;
 pub use smoothed::MOST_SWEEPS;
 pub(crate) use smoothed::{smoothed, swept};
 pub use spec::MetricSpec;
-pub(crate) use spec::Parameters;
+pub(crate) use spec::{Parameters, name_and_rest};
 pub(crate) use validate::{
     check_at_vertices, check_field, check_sizes, check_tensor, check_tensor_at, check_tensor3, require,
 };

@@ -1,7 +1,6 @@
 //! The metric as a user writes it on the command line or in a recipe.
 
 use super::{BoundarySizes, Expression, Formula, Shock, Swirl, SwirlField, Uniform, Variables};
-use crate::domain::name_and_rest;
 use crate::error::{Error, Result};
 use crate::geometry::Tensor;
 
@@ -50,6 +49,11 @@ impl MetricSpec {
 const METRICS: &str = "metrics: uniform, uniform:m11,m12,m22, swirl:nu=3,field=authors, shock:phi=10,lambda=0.6, \
                        'formula:m11; m12; m22', boundary:h0=0.01,growth=1.2,aspect=1,h_max=inf, FILE.sol, \
                        'hessian:EXPR', hessian:FILE.sol";
+
+/// The name in front of a colon, and what is behind it.
+pub(crate) fn name_and_rest(text: &str) -> (&str, Option<&str>) {
+    text.split_once(':').map_or((text, None), |(name, rest)| (name, Some(rest)))
+}
 
 fn uniform(parameters: Option<&str>) -> Result<MetricSpec> {
     let Some(parameters) = parameters else {

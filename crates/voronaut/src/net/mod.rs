@@ -18,9 +18,9 @@ pub(crate) use seen::{SeedsOnSurface, Terrain, View};
 
 use crate::geometry::Point;
 use crate::lists::distinct;
+use crate::manifold::Place;
 use crate::mesh::edges_of;
 use crate::metric::MetricField;
-use crate::surface::Place;
 use crate::triangulation::smallest_first;
 use measure::Measure;
 use seen::{Flat, Seeds};

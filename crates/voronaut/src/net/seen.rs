@@ -3,9 +3,10 @@
 use super::Simplices;
 use crate::dual::Dual;
 use crate::geometry::{Point, Point3, Tensor, Vector3};
+use crate::manifold::surface::Patch;
+use crate::manifold::surface::metric::SurfaceMetric;
+use crate::manifold::{Chart, Manifold, Place};
 use crate::metric::{MetricField, Near};
-use crate::surface::metric::SurfaceMetric;
-use crate::surface::{Chart, Input, Patch, Place};
 use crate::triangulation::VertexId;
 
 /// Seeds whose normals have a lesser cosine with a chart's are not seen in it.
@@ -119,14 +120,14 @@ impl View for Flat<'_> {
 
 /// Seeds at places of a surface.
 pub(crate) struct SeedsOnSurface<'a> {
-    input: &'a Input,
+    input: &'a Manifold,
     metric: &'a dyn SurfaceMetric,
     places: Vec<Place>,
     normals: Vec<Vector3>,
 }
 
 impl<'a> SeedsOnSurface<'a> {
-    pub(crate) fn new(input: &'a Input, metric: &'a dyn SurfaceMetric, places: Vec<Place>) -> Self {
+    pub(crate) fn new(input: &'a Manifold, metric: &'a dyn SurfaceMetric, places: Vec<Place>) -> Self {
         let normals = places.iter().map(|place| input.normal(place)).collect();
         Self { input, metric, places, normals }
     }
@@ -231,6 +232,6 @@ impl View for InChart<'_> {
     }
 
     fn is_smooth(&self) -> bool {
-        self.seeds.input.implicit.is_some() || self.patch.is_some()
+        self.seeds.input.equation().is_some() || self.patch.is_some()
     }
 }

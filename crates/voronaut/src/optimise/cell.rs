@@ -291,9 +291,9 @@ fn turn(spokes: &[Vector], last: Vector) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::domain::Domain;
     use crate::dual::Dual;
     use crate::geometry::{Point, Tensor};
+    use crate::manifold::domain::Domain;
     use crate::metric::{Scaled, Shock};
     use crate::progress::Silent;
     use crate::sampling::{Fill, Plan, Target, refine, sample_segments};
@@ -321,7 +321,7 @@ mod tests {
         let field = Shock { phi: 1.0, lambda: 0.6 };
         let plan = Plan::new(domain.clone(), Vec::new(), &field, Target::Vertices(400)).unwrap();
         let scaled = Scaled { field: &field, factor: plan.scale_for(400.0) };
-        let mut dual = Dual::new(&domain, scaled).unwrap();
+        let mut dual = Dual::new(domain.corners(), scaled).unwrap();
         sample_segments(&mut dual, &plan.edges, &plan.arcs, scaled.factor, 0);
         refine(&mut dual, Fill::AtMost(400), &Silent).unwrap();
         dual.measure();
@@ -348,7 +348,7 @@ mod tests {
     fn logarithms_in_the_frame_are_logarithms() {
         let domain = Domain::shape("rect:0,0,1,1").unwrap();
         let field = |p: Point| Tensor::new(4.0 + 3.0 * p.x, 0.5 * p.y, 3.0 - p.x + p.y);
-        let dual = Dual::new(&domain, Scaled { field: &field, factor: 1.0 }).unwrap();
+        let dual = Dual::new(domain.corners(), Scaled { field: &field, factor: 1.0 }).unwrap();
         for v in dual.topology().vertices() {
             let (view, local) = (View::at(&dual, v), dual.local(v));
             for d in [Vector::new(0.3, 0.1), Vector::new(-2.0, 3.0), Vector::new(0.0, 1e-9)] {

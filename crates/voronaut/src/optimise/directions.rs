@@ -46,9 +46,9 @@ mod tests {
     use super::super::cell::Tangent;
     use super::super::springs::tests::seeded;
     use super::*;
-    use crate::domain::Domain;
     use crate::dual::Dual;
     use crate::geometry::Tensor;
+    use crate::manifold::domain::Domain;
     use crate::metric::Uniform;
 
     #[test]

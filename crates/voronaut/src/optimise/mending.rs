@@ -414,9 +414,9 @@ fn ways(frame: [f64; 3]) -> Vec<Vector> {
 mod tests {
     use super::super::springs::tests::seeded;
     use super::*;
-    use crate::domain::Domain;
     use crate::dual::Dual;
     use crate::geometry::{Point, Tensor};
+    use crate::manifold::domain::Domain;
     use crate::metric::{MetricField, Shock};
 
     /// Of all edges and triangles.

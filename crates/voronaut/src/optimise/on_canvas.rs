@@ -152,16 +152,17 @@ mod tests {
     use super::*;
     use crate::canvas::Kind;
     use crate::geometry::{Point3, Tensor3};
+    use crate::manifold::Manifold;
+    use crate::manifold::surface::sphere;
     use crate::optimise::cell::{CellsOf, Tangent};
-    use crate::surface::{Input, sphere};
 
     /// On a sphere in an anisotropic metric: the cells cover it, and are those of tangent planes but for what these do not see.
     #[test]
     fn cells_on_a_sphere_are_those_of_tangent_planes() {
         let metric = |p: Point3| Tensor3::from_disk([4.0 + p.y, 0.0, 2.0, 0.0, 0.5 * p.x, 3.0]);
-        let input = Input::new(sphere(1.0, 0.25).unwrap(), None);
-        let fine = Input::new(sphere(1.0, 0.015).unwrap(), None);
-        let surface = &input.surface;
+        let input = Manifold::new(sphere(1.0, 0.25).unwrap(), None);
+        let fine = Manifold::new(sphere(1.0, 0.015).unwrap(), None);
+        let surface = input.surface();
         let places: Vec<_> =
             surface.topology().vertices().map(|v| fine.closest(surface.position(v)).unwrap()).collect();
         let mut dual = SurfaceDual::new(&fine, &metric, 20.0, places, 0, surface.topology().clone()).unwrap();
@@ -172,7 +173,7 @@ mod tests {
         let found = OnCanvas::new(&canvas).moments(&dual, |_, logarithm| logarithm).unwrap();
         let expected = Tangent.moments(&dual).unwrap();
         let mass = |all: &[(VertexId, Moments)]| all.iter().map(|(_, moments)| moments.mass).sum::<f64>();
-        let whole = 20.0 * crate::surface::metric::area_of_surface(&fine, &metric, 0).unwrap();
+        let whole = 20.0 * crate::manifold::surface::metric::area_of_surface(&fine, &metric, 0).unwrap();
         assert!((mass(&found) / whole - 1.0).abs() < 0.02, "{} {whole}", mass(&found));
         // Borders of cells are where canvas vertices are.
         let (mut of_mass, mut of_first, seeds) = (0.0, 0.0, found.len() as f64);

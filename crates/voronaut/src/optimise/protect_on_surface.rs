@@ -8,11 +8,11 @@ use crate::error::Result;
 use crate::geodesic::LocalMetric;
 use crate::geometry::{Point, Vector};
 use crate::lists::distinct;
+use crate::manifold::Place;
+use crate::manifold::surface::metric::Scaled;
 use crate::net::{Memory, Net, SeedsOnSurface, Terrain, View};
 use crate::parallel::prelude::*;
 use crate::progress::Progress;
-use crate::surface::Place;
-use crate::surface::metric::Scaled;
 use crate::triangulation::{Triangulation, VertexId};
 
 /// Rings of seeds around one that circles of its triangles, and of those that touch its neighbours, depend on.

@@ -200,8 +200,8 @@ pub(super) mod tests {
     use super::super::cell::Tangent;
     use super::super::movers::State;
     use super::*;
-    use crate::domain::Domain;
     use crate::dual::Dual;
+    use crate::manifold::domain::Domain;
     use crate::metric::{MetricField, Scaled, Uniform};
     use crate::progress::Silent;
     use crate::sampling::{Fill, Plan, Target, refine, sample_segments};
@@ -210,7 +210,7 @@ pub(super) mod tests {
     pub(crate) fn seeded<'a>(domain: &Domain, field: &'a dyn MetricField) -> Dual<'a> {
         let plan = Plan::new(domain.clone(), Vec::new(), field, Target::Vertices(400)).unwrap();
         let scaled = Scaled { field, factor: plan.scale_for(400.0) };
-        let mut dual = Dual::new(domain, scaled).unwrap();
+        let mut dual = Dual::new(domain.corners(), scaled).unwrap();
         sample_segments(&mut dual, &plan.edges, &plan.arcs, scaled.factor, 0);
         refine(&mut dual, Fill::AtMost(400), &Silent).unwrap();
         dual

@@ -12,7 +12,7 @@ pub use delaunay::delaunay;
 pub(crate) use locate::Location;
 pub(crate) use order::hilbert_order;
 
-use crate::geometry::{Orientation, Point, orientation, signed_area};
+use crate::geometry::{Aabb, Orientation, Point, orientation, signed_area};
 use crate::parallel::copy_over;
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
 
@@ -62,6 +62,21 @@ impl Planar {
     /// The Euclidean area of all faces.
     pub(crate) fn area(&self) -> f64 {
         self.topology.faces().map(|f| self.triangle(f)).map(|[a, b, c]| 0.5 * signed_area(a, b, c)).sum()
+    }
+
+    /// The edges with a face on one side only: the outline of what is covered.
+    pub(crate) fn boundary(&self) -> Vec<(Point, Point)> {
+        self.topology.borders().map(|h| self.ends(h).into()).collect()
+    }
+
+    /// The corners of all faces.
+    pub(crate) fn triangles(&self) -> Vec<[Point; 3]> {
+        self.topology.faces().map(|f| self.triangle(f)).collect()
+    }
+
+    /// The smallest axis-aligned box around all faces; `None` without any.
+    pub(crate) fn bounds(&self) -> Option<Aabb> {
+        Aabb::of(self.topology.vertices().map(|v| self.position(v)))
     }
 
     /// Whether the edge has two faces that form a strictly convex quadrilateral: a flip keeps the embedding.

@@ -7,11 +7,11 @@ use super::metric_quality::{
 use super::surface_quality::Field;
 use crate::error::Result;
 use crate::geometry::{Point, Tensor};
+use crate::manifold::Manifold;
+use crate::manifold::surface::metric::SurfaceMetric;
 use crate::mesh::{EdgeSide, Edges, Mesh};
 use crate::metric::MetricField;
 use crate::parallel::prelude::*;
-use crate::surface::Input;
-use crate::surface::metric::SurfaceMetric;
 
 /// A figure of the mesh with straight edges, and the same with geodesic edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
@@ -87,11 +87,11 @@ pub fn histograms(mesh: &Mesh, metric: &dyn MetricField) -> Result<Histograms> {
 ///
 /// # Errors
 /// As of [`surface_quality`](super::surface_quality()), but for meshes without triangles.
-pub fn histograms_on(mesh: &Mesh, input: &Input, metric: &dyn SurfaceMetric) -> Result<Histograms> {
+pub fn histograms_on(mesh: &Mesh, input: &Manifold, metric: &dyn SurfaceMetric) -> Result<Histograms> {
     demand_vertices(mesh)?;
-    let field = Field::new(&input.surface, metric);
+    let field = Field::new(input, metric);
     let edges = Edges::of(&mesh.triangles);
-    let measured = measure(mesh, &edges, |side, inside| field.geodesic(mesh, input, side, inside))?;
+    let measured = measure(mesh, &edges, |side, inside| field.geodesic(mesh, side, inside))?;
     let flattened = field.flattened(mesh)?;
     let curved = geodesic_angles(mesh, &edges, &measured, |v, from, to| {
         let (m, plane) = field.tangential(mesh.position(v))?;
@@ -192,8 +192,8 @@ fn unsigned(angle: f64) -> f64 {
 mod tests {
     use super::super::test_meshes::{grid, lattice, mesh};
     use super::*;
-    use crate::surface::metric::Constant;
-    use crate::surface::sphere;
+    use crate::manifold::surface::metric::Constant;
+    use crate::manifold::surface::sphere;
 
     /// How many values the bins that touch this value have.
     fn near(histogram: &Histogram, value: f64) -> [usize; 2] {
@@ -251,7 +251,7 @@ mod tests {
     /// Great circles of the unit sphere: lengths and angles by spherical trigonometry; seen on an equation and on its triangles.
     #[test]
     fn spherical_triangles_have_more_than_180_degrees() {
-        let exact = Input::shape("sphere:1", Some(0.05)).unwrap();
+        let exact = Manifold::shape("sphere:1", Some(0.05)).unwrap();
         let mesh = sphere(1.0, 0.4).unwrap().to_mesh();
         let field = Constant(crate::geometry::Tensor3::IDENTITY);
         let at = |v: u32| mesh.position(v) - crate::geometry::Point3::default();
@@ -268,7 +268,7 @@ mod tests {
             mesh.triangles.iter().map(|&[a, b, c]| corner([a, b, c]) + corner([b, c, a]) + corner([c, a, b])).sum();
         let mean = angles / (3 * mesh.triangles.len()) as f64;
         assert!(mean > 60.5, "{mean}");
-        for (input, tolerance) in [(&exact, 1e-6), (&Input::new(exact.surface.clone(), None), 1e-3)] {
+        for (input, tolerance) in [(&exact, 1e-6), (&Manifold::new(exact.surface().clone(), None), 1e-3)] {
             let found = histograms_on(&mesh, input, &field).unwrap();
             assert!(
                 (found.edge_length.mean.geodesic / length - 1.0).abs() < tolerance,
@@ -295,7 +295,7 @@ mod tests {
         let field = |p: crate::geometry::Point3| {
             crate::geometry::TangentPlane { u, v, normal: u.cross(v) }.extend(bent(p.x / 0.6), 9.0)
         };
-        let input = Input::new(crate::surface::Surface::new(&tilted).unwrap(), None);
+        let input = Manifold::of(&tilted).unwrap();
         let found = histograms_on(&tilted, &input, &field).unwrap();
         assert!(truth.geodesics_on_border > 0);
         assert_eq!((found.geodesics_on_border, found.geodesics_not_found), (truth.geodesics_on_border, 0));

@@ -5,10 +5,10 @@ use crate::curved::{AREA, MOST, Place, bernstein, bezier_points, blend, exponent
 use crate::elementary::Elementary;
 use crate::error::{Error, Result};
 use crate::geometry::{Node, Point, Point3, radon_on_parts};
+use crate::manifold::{self, Manifold};
 use crate::mesh::Mesh;
 use crate::metric::{Expression, Near, Norm, ScalarField};
 use crate::parallel::prelude::*;
-use crate::surface::{self, Input};
 use std::cell::Cell;
 use std::fmt;
 
@@ -75,13 +75,13 @@ pub fn interpolation_error(mesh: &Mesh, function: &dyn ScalarField, norm: Norm) 
 /// As of [`interpolation_error`].
 pub fn interpolation_error_on(
     mesh: &Mesh,
-    input: &Input,
+    input: &Manifold,
     function: &Expression,
     norm: Norm,
 ) -> Result<InterpolationError> {
     let value = |p: Point3| function.at(p.x, p.y, p.z);
     let beside = |triangle: [Point3; 3]| input.closest(Point3::weighted(triangle, [1.0 / 3.0; 3])).ok();
-    let lifted = |near: &Option<surface::Place>, p: Point3| {
+    let lifted = |near: &Option<manifold::Place>, p: Point3| {
         let place = near.as_ref().and_then(|near| input.lift(near, p));
         value(place.map_or(p, |place| place.position))
     };

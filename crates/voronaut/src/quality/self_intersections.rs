@@ -97,8 +97,8 @@ mod tests {
     use super::super::test_meshes::{grid, mesh};
     use super::super::validity::validity;
     use super::*;
+    use crate::manifold::surface::{Surface, sphere, torus};
     use crate::mesh::Mesh;
-    use crate::surface::{Surface, sphere, torus};
 
     fn scaled(mut mesh: Mesh, scale: f64) -> Mesh {
         mesh.points.as_flattened_mut().iter_mut().for_each(|x| *x *= scale);

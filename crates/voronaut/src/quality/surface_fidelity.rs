@@ -8,9 +8,10 @@ use crate::elementary::Elementary;
 use crate::error::Result;
 use crate::geometry::{Point3, Vector3};
 use crate::lists::distinct;
+use crate::manifold::Manifold;
+use crate::manifold::surface::{Nearest, closest_zero};
 use crate::mesh::Mesh;
 use crate::parallel::prelude::*;
-use crate::surface::{Implicit, Nearest, Surface, closest_zero};
 use crate::triangulation::FaceId;
 
 /// Euclidean distances between a mesh and a surface, and angles between their normals.
@@ -66,20 +67,19 @@ pub struct NormalDeviation {
     pub max: Spot,
 }
 
-/// Compares the mesh of a surface with that surface, in parallel; the same bits for any number of threads. `implicit` is the
-/// surface's equation, if it has one, with `surface` as its first mesh.
+/// Compares the mesh of a surface with that surface, in parallel; the same bits for any number of threads.
 ///
 /// # Errors
 /// [`Error::Mesh`](crate::Error::Mesh) of a mesh without triangles, with vertices that do not exist, or with positions that are
 /// not finite.
-pub fn surface_fidelity(mesh: &Mesh, surface: &Surface, implicit: Option<&dyn Implicit>) -> Result<SurfaceFidelity> {
+pub fn surface_fidelity(mesh: &Mesh, surface: &Manifold) -> Result<SurfaceFidelity> {
     demand_vertices(mesh)?;
     let triangles: Vec<[Point3; 3]> = mesh.triangles.iter().map(|&t| mesh.positions_of(t)).collect();
     if let Some(p) = triangles.as_flattened().iter().find(|p| !p.is_finite()) {
         return Err(fault("a position is not finite", &p.to_string()));
     }
-    let target = Target::new(surface, implicit);
-    let floor = NOTHING * target.diagonal;
+    let target = Target { surface };
+    let floor = NOTHING * target.diagonal();
     let there = sample(&triangles, floor, |at| Sample { at, distance: target.closest(at).position.distance(at) });
     let tree = Nearest::of(triangles.iter().copied());
     let back = |p: Point3| {
@@ -92,28 +92,28 @@ pub fn surface_fidelity(mesh: &Mesh, surface: &Surface, implicit: Option<&dyn Im
     };
     let normals = Normals::of(&triangles, &target);
     Ok(SurfaceFidelity {
-        both: Deviation::of(&together(there, back), target.diagonal),
-        mesh_to_surface: Deviation::of(&there, target.diagonal),
-        surface_to_mesh: Deviation::of(&back, target.diagonal),
-        curved: of_curved(mesh, &target).map(|found| Deviation::of(&found, target.diagonal)),
+        both: Deviation::of(&together(there, back), target.diagonal()),
+        mesh_to_surface: Deviation::of(&there, target.diagonal()),
+        surface_to_mesh: Deviation::of(&back, target.diagonal()),
+        curved: of_curved(mesh, &target).map(|found| Deviation::of(&found, target.diagonal())),
         vertex_to_surface: farthest_vertex(mesh, &target),
         normal_deviation: normals.deviation,
         folded: normals.folded,
         reversed: normals.reversed,
-        diagonal: target.diagonal,
+        diagonal: target.diagonal(),
     })
 }
 
 /// For each vertex of the surface the greatest distance between mesh and surface that is seen at some points of its triangles, or of
 /// those of the mesh there: corners, middles of edges and centroids.
-pub(crate) fn distances_around(mesh: &Mesh, surface: &Surface, implicit: Option<&dyn Implicit>) -> Vec<f64> {
-    let target = Target::new(surface, implicit);
+pub(crate) fn distances_around(mesh: &Mesh, surface: &Manifold) -> Vec<f64> {
+    let target = Target { surface };
     let triangles: Vec<[Point3; 3]> = mesh.triangles.iter().map(|&t| mesh.positions_of(t)).collect();
     let tree = Nearest::of(triangles.iter().copied());
     let there = triangles.par_iter().flat_map_iter(|&corners| {
         places_of(corners).into_iter().filter_map(|p| {
-            let found = target.nearest.closest(surface, p)?;
-            let distance = implicit.map_or(found.distance, |_| target.closest(p).position.distance(p));
+            let found = surface.closest_of_triangles(p)?;
+            let distance = surface.equation().map_or(found.distance, |_| target.closest(p).position.distance(p));
             Some((found.place.face, distance))
         })
     });
@@ -144,10 +144,7 @@ const ON_ZERO: f64 = 1e-13;
 
 /// The surface, as something to be near to.
 struct Target<'a> {
-    surface: &'a Surface,
-    nearest: Nearest,
-    implicit: Option<&'a dyn Implicit>,
-    diagonal: f64,
+    surface: &'a Manifold,
 }
 
 /// The closest point of the surface, and the unit normal there.
@@ -156,20 +153,19 @@ struct Foot {
     normal: Vector3,
 }
 
-impl<'a> Target<'a> {
-    fn new(surface: &'a Surface, implicit: Option<&'a dyn Implicit>) -> Self {
-        let diagonal = surface.bounds().diagonal();
-        Self { surface, nearest: Nearest::new(surface), implicit, diagonal }
+impl Target<'_> {
+    fn diagonal(&self) -> f64 {
+        self.surface.diagonal()
     }
 
     /// The closest point of the surface to `p`, which is finite; of its triangles, where there is no way onto f = 0.
     fn closest(&self, p: Point3) -> Foot {
-        let Some(found) = self.nearest.closest(self.surface, p) else {
+        let Some(found) = self.surface.closest_of_triangles(p) else {
             return Foot { position: p, normal: Vector3::default() };
         };
         let place = found.place;
-        let zero = self.implicit.and_then(|f| {
-            let from = |start| closest_zero(f, p, start, self.diagonal, ON_ZERO * self.diagonal);
+        let zero = self.surface.equation().and_then(|f| {
+            let from = |start| closest_zero(f, p, start, self.diagonal(), ON_ZERO * self.diagonal());
             // Far from the surface the way along gradients may miss the closest part; the triangles know which that is.
             let q = from(p).filter(|q| q.distance(p) <= found.distance).or_else(|| from(place.position))?;
             Some(Foot { position: q, normal: f.jet(q).gradient.unit()? })
@@ -179,13 +175,14 @@ impl<'a> Target<'a> {
 
     /// The point of the surface that a point of its triangles stands for.
     fn lift(&self, p: Point3) -> Point3 {
-        let zero = self.implicit.and_then(|f| closest_zero(f, p, p, self.diagonal, ON_ZERO * self.diagonal));
+        let zero =
+            self.surface.equation().and_then(|f| closest_zero(f, p, p, self.diagonal(), ON_ZERO * self.diagonal()));
         zero.unwrap_or(p)
     }
 
     /// How far a vertex is off.
     fn miss(&self, p: Point3) -> f64 {
-        let by_equation = self.implicit.map(|f| f.jet(p)).map(|jet| jet.value.abs() / jet.gradient.norm());
+        let by_equation = self.surface.equation().map(|f| f.jet(p)).map(|jet| jet.value.abs() / jet.gradient.norm());
         by_equation.filter(|miss| miss.is_finite()).unwrap_or_else(|| self.closest(p).position.distance(p))
     }
 }
@@ -266,14 +263,11 @@ impl Normals {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::surface::{Input, sphere, torus};
+    use crate::manifold::Manifold;
+    use crate::manifold::surface::{sphere, torus};
 
     fn close(a: f64, b: f64, tolerance: f64) {
         assert!((a - b).abs() <= tolerance * b.abs(), "{a} is not {b}");
-    }
-
-    fn implicit(input: &Input) -> Option<&dyn Implicit> {
-        input.implicit.as_ref().map(|f| f as &dyn Implicit)
     }
 
     fn moved(mut mesh: Mesh, by: [f64; 3]) -> Mesh {
@@ -297,28 +291,28 @@ mod tests {
         for scale in [1e-9, 1.0, 1e9] {
             let mut mesh = torus(2.0, 0.7, 0.3).unwrap().to_mesh();
             mesh.points.as_flattened_mut().iter_mut().for_each(|x| *x *= scale);
-            let found = surface_fidelity(&mesh, &Surface::new(&mesh).unwrap(), None).unwrap();
+            let found = surface_fidelity(&mesh, &Manifold::of(&mesh).unwrap()).unwrap();
             assert!(found.both.hausdorff_share < 1e-14 && found.both.rms_share < 1e-14, "{found:?}");
             assert!(found.normal_deviation.max.value < 1e-5 && found.folded == 0 && !found.reversed, "{found:?}");
             mesh.triangles.iter_mut().for_each(|t| t.swap(0, 1));
-            let surface = torus(2.0 * scale, 0.7 * scale, 0.3 * scale).unwrap();
-            let reversed = surface_fidelity(&mesh, &surface, None).unwrap();
+            let surface = Manifold::new(torus(2.0 * scale, 0.7 * scale, 0.3 * scale).unwrap(), None);
+            let reversed = surface_fidelity(&mesh, &surface).unwrap();
             assert!(reversed.reversed && reversed.folded == 0 && reversed.normal_deviation.max.value < 1e-5);
         }
     }
 
     #[test]
     fn an_icosahedron_in_its_sphere_in_closed_form() {
-        let input = Input::shape("sphere:2", Some(0.25)).unwrap();
+        let input = Manifold::shape("sphere:2", Some(0.25)).unwrap();
         let mesh = sphere(2.0, 4.0).unwrap().to_mesh();
-        let found = surface_fidelity(&mesh, &input.surface, implicit(&input)).unwrap();
+        let found = surface_fidelity(&mesh, &input).unwrap();
         // Circumradius 2, inradius of the icosahedron; the same from both sides.
         let golden = 0.5 * (1.0 + 5.0_f64.sqrt());
         let edge = 2.0 / (0.5 * (golden * 5.0_f64.sqrt()).sqrt());
         let gap = 2.0 - edge * golden * golden / (2.0 * 3.0_f64.sqrt());
         for side in [found.both, found.mesh_to_surface, found.surface_to_mesh] {
             assert!(side.hausdorff <= gap * (1.0 + 1e-12) && side.hausdorff > 0.99 * gap, "{side:?} {gap}");
-            close(side.hausdorff_share, side.hausdorff / input.surface.bounds().diagonal(), 1e-15);
+            close(side.hausdorff_share, side.hausdorff / input.bounds().diagonal(), 1e-15);
             let Position::Space(at) = side.at else { panic!("three coordinates") };
             let from_centre = (Point3::from(at) - Point3::default()).norm();
             assert!(from_centre > 2.0 - gap - 1e-9 && from_centre < 2.0 + 1e-12);
@@ -339,11 +333,11 @@ mod tests {
     #[test]
     fn samples_of_triangles_are_good_to_a_hundredth() {
         for (coarse, by) in [(0.9, [0.0; 3]), (0.6, [0.03, -0.02, 0.01])] {
-            let surface = torus(2.0, 0.7, 0.45).unwrap();
+            let surface = Manifold::new(torus(2.0, 0.7, 0.45).unwrap(), None);
             let mesh = moved(torus(2.0, 0.7, coarse).unwrap().to_mesh(), by);
-            let found = surface_fidelity(&mesh, &surface, None).unwrap();
-            let nearest = Nearest::new(&surface);
+            let found = surface_fidelity(&mesh, &surface).unwrap();
             let ours: Vec<_> = mesh.triangles.iter().map(|&t| mesh.positions_of(t)).collect();
+            let nearest = Nearest::new(surface.surface());
             let there = dense(&ours, |p| nearest.distance(p).unwrap());
             let tree = Nearest::of(ours.iter().copied());
             let theirs: Vec<_> = surface.topology().faces().map(|f| surface.triangle(f)).collect();
@@ -361,17 +355,17 @@ mod tests {
     #[test]
     fn distances_are_to_the_equation_not_to_its_mesh() {
         // A fine mesh of the true torus, held against a coarse first mesh with the equation.
-        let input = Input::shape("torus:2,0.7", Some(0.4)).unwrap();
+        let input = Manifold::shape("torus:2,0.7", Some(0.4)).unwrap();
         let mesh = torus(2.0, 0.7, 0.15).unwrap().to_mesh();
-        let exact = surface_fidelity(&mesh, &input.surface, implicit(&input)).unwrap();
-        let by_mesh = surface_fidelity(&mesh, &input.surface, None).unwrap();
+        let exact = surface_fidelity(&mesh, &input).unwrap();
+        let by_mesh = surface_fidelity(&mesh, &Manifold::new(input.surface().clone(), None)).unwrap();
         // Sagittas of edges of 0.15 and 0.4 on radius 0.7.
         assert!(exact.both.hausdorff < 8e-3 && by_mesh.both.hausdorff > 0.02, "{exact:?} {by_mesh:?}");
         assert!(exact.vertex_to_surface.value < 1e-14 && by_mesh.vertex_to_surface.value > 0.02);
         assert!(exact.normal_deviation.mean < by_mesh.normal_deviation.mean);
         // Pushed out by 0.1 along its normals it is that far away everywhere, by |f| / |grad f| to first order.
         let out = torus(2.0, 0.8, 0.1).unwrap().to_mesh();
-        let found = surface_fidelity(&out, &input.surface, implicit(&input)).unwrap();
+        let found = surface_fidelity(&out, &input).unwrap();
         close(found.both.hausdorff, 0.1, 0.01);
         close(found.both.rms, 0.1, 0.02);
         close(found.vertex_to_surface.value, (0.8 * 0.8 - 0.7 * 0.7) / 1.6, 1e-9);
@@ -379,8 +373,8 @@ mod tests {
 
     #[test]
     fn what_is_folded_is_counted() {
-        let surface = sphere(1.0, 0.3).unwrap();
-        let mut mesh = surface.to_mesh();
+        let surface = Manifold::new(sphere(1.0, 0.3).unwrap(), None);
+        let mut mesh = surface.whole_mesh();
         // A vertex pulled beyond its neighbours, over the surface.
         let [a, b, c] = mesh.triangles[40];
         let far = |axis: usize| {
@@ -388,26 +382,22 @@ mod tests {
         };
         let p = Point3::new(far(0), far(1), far(2)) - Point3::default();
         mesh.points[a as usize] = (Point3::default() + p * (1.0 / p.norm())).to_array();
-        let found = surface_fidelity(&mesh, &surface, None).unwrap();
+        let found = surface_fidelity(&mesh, &surface).unwrap();
         assert!(found.folded >= 1 && found.folded < 6 && found.normal_deviation.max.value > 90.0, "{found:?}");
         assert!(!found.reversed);
     }
 
     #[test]
     fn faults_are_errors_and_threads_do_not_matter() {
-        let input = Input::shape("torus:2,0.7", Some(0.4)).unwrap();
-        assert!(surface_fidelity(&Mesh::default(), &input.surface, None).is_err());
+        let input = Manifold::shape("torus:2,0.7", Some(0.4)).unwrap();
+        assert!(surface_fidelity(&Mesh::default(), &input).is_err());
         let mesh = torus(2.0, 0.7, 0.5).unwrap().to_mesh();
         let mut broken = mesh.clone();
         broken.points[3][0] = f64::INFINITY;
-        assert!(surface_fidelity(&broken, &input.surface, None).is_err());
+        assert!(surface_fidelity(&broken, &input).is_err());
         broken.triangles[0][0] = u32::MAX;
-        assert!(surface_fidelity(&broken, &input.surface, None).is_err());
-        let with = |threads| {
-            crate::test_cases::on_threads(threads, || {
-                surface_fidelity(&mesh, &input.surface, implicit(&input)).unwrap()
-            })
-        };
+        assert!(surface_fidelity(&broken, &input).is_err());
+        let with = |threads| crate::test_cases::on_threads(threads, || surface_fidelity(&mesh, &input).unwrap());
         assert_eq!(with(1), with(3));
     }
 }

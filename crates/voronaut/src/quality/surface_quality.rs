@@ -6,10 +6,10 @@ use super::metric_quality::{GAUSS, MetricQuality, Shape, collect, demand_vertice
 use crate::elementary::Elementary;
 use crate::error::Result;
 use crate::geometry::{Point, Point3, Seen, TangentPlane, Tensor, Vector, Vector3};
+use crate::manifold::surface::metric::{SurfaceMetric, check_tensor3};
+use crate::manifold::{Chart, Manifold};
 use crate::mesh::{EdgeSide, Mesh};
 use crate::metric::MetricField;
-use crate::surface::metric::{SurfaceMetric, check_tensor3};
-use crate::surface::{Chart, Input, Nearest, Surface};
 
 /// Measures the mesh of a surface in a metric on it, in parallel; the same bits for any number of threads. `surface` is what
 /// the metric is a field on; the mesh may stray from it.
@@ -22,7 +22,7 @@ use crate::surface::{Chart, Input, Nearest, Surface};
 /// # Errors
 /// [`Error::Mesh`](crate::Error::Mesh) where the mesh has no triangles, names vertices that do not exist, or has positions that
 /// are not finite; [`Error::Metric`](crate::Error::Metric) where a tensor is not positive definite.
-pub fn surface_quality(mesh: &Mesh, surface: &Surface, metric: &dyn SurfaceMetric) -> Result<MetricQuality> {
+pub fn surface_quality(mesh: &Mesh, surface: &Manifold, metric: &dyn SurfaceMetric) -> Result<MetricQuality> {
     demand_vertices(mesh)?;
     let field = Field::new(surface, metric);
     let shape = field.shapes(mesh)?;
@@ -32,23 +32,22 @@ pub fn surface_quality(mesh: &Mesh, surface: &Surface, metric: &dyn SurfaceMetri
 
 /// A metric field, and where to look it up.
 pub(super) struct Field<'a> {
-    surface: &'a Surface,
-    nearest: Nearest,
+    surface: &'a Manifold,
     metric: &'a dyn SurfaceMetric,
 }
 
 impl<'a> Field<'a> {
-    pub(super) fn new(surface: &'a Surface, metric: &'a dyn SurfaceMetric) -> Self {
-        Self { surface, nearest: Nearest::new(surface), metric }
+    pub(super) fn new(surface: &'a Manifold, metric: &'a dyn SurfaceMetric) -> Self {
+        Self { surface, metric }
     }
 
     /// What the metric is at the closest place.
     fn at(&self, p: Point3) -> Result<Seen> {
         let not_finite = || fault("a position is not finite", &p.to_string());
-        let place = self.nearest.closest(self.surface, p).ok_or_else(not_finite)?.place;
+        let place = self.surface.closest_of_triangles(p).ok_or_else(not_finite)?.place;
         let tensor = self.metric.at(&place);
         check_tensor3(tensor, || place.position.to_string())?;
-        Ok(Seen { tensor, normal: self.surface.normal_at(&place) })
+        Ok(Seen { tensor, normal: self.surface.normal_between(&place) })
     }
 
     /// The metric around a place, as the tangent plane there sees it, and a vector in it, of its own length; `None` where the
@@ -72,26 +71,20 @@ impl<'a> Field<'a> {
     }
 
     /// An edge, straight and as a geodesic of the chart at its middle; `inside` is where the surface lies of an edge on its border.
-    pub(super) fn geodesic(
-        &self,
-        mesh: &Mesh,
-        input: &Input,
-        side: &EdgeSide,
-        inside: Option<f64>,
-    ) -> Result<MeasuredEdge<Vector3>> {
+    pub(super) fn geodesic(&self, mesh: &Mesh, side: &EdgeSide, inside: Option<f64>) -> Result<MeasuredEdge<Vector3>> {
         let [a, b] = side.ends.map(|v| mesh.position(v));
         let straight = self.length([a, b])?;
         let chord = MeasuredEdge { straight, geodesic: straight, directions: [b - a, a - b], found: Found::No };
         let closest = |p: Point3| {
-            let place = self.nearest.closest(self.surface, p)?.place;
-            input.lift(&place, p)
+            let place = self.surface.closest_of_triangles(p)?.place;
+            self.surface.lift(&place, p)
         };
         let Some(middle) = closest(a.lerp(b, 0.5)) else { return Ok(chord) };
-        let chart = Chart::new(input, self.metric, middle, input.normal(&middle));
+        let chart = Chart::new(self.surface, self.metric, middle, self.surface.normal(&middle));
         let ends = [a, b].map(|p| chart.flatten(p));
         // Seen from the side that its triangle turns to, which is the chart's or the other.
         let [p, q, r] = mesh.positions_of(mesh.triangles[side.half_edge as usize / 3]);
-        let turns = (q - p).cross(r - p).dot(input.normal(&middle)).signum();
+        let turns = (q - p).cross(r - p).dot(self.surface.normal(&middle)).signum();
         let found = geodesic(&chart, ends, straight, inside.map(|side| side * turns));
         let places = ends.map(|end| chart.place(end));
         let ([Some(from), Some(to)], Found::Geodesic) = (places, found.found) else {
@@ -156,8 +149,9 @@ mod tests {
     use super::super::test_meshes::grid;
     use super::*;
     use crate::geometry::{Tensor, Tensor3};
-    use crate::surface::metric::Constant;
-    use crate::surface::{Place, sphere, torus};
+    use crate::manifold::Place;
+    use crate::manifold::surface::metric::Constant;
+    use crate::manifold::surface::{sphere, torus};
 
     fn close(a: f64, b: f64, tolerance: f64) {
         assert!((a - b).abs() <= tolerance * b.abs(), "{a} is not {b}");
@@ -216,7 +210,7 @@ mod tests {
             let m = planar(Point::new(columns[0].dot(v), columns[1].dot(v)));
             TangentPlane { u: columns[0], v: columns[1], normal: columns[2] }.extend(m, 1e5)
         };
-        let surface = Surface::new(&turned).unwrap();
+        let surface = Manifold::of(&turned).unwrap();
         let found = surface_quality(&turned, &surface, &field).unwrap();
         assert_close(&found, &truth, 1e-9);
         assert_eq!(found.interior_edge_length.is_some(), truth.interior_edge_length.is_some());
@@ -237,7 +231,7 @@ mod tests {
 
     #[test]
     fn the_normal_is_not_seen() {
-        let surface = sphere(2.0, 0.4).unwrap();
+        let surface = Manifold::new(sphere(2.0, 0.4).unwrap(), None);
         let mesh = torus(1.5, 0.4, 0.2).unwrap().to_mesh();
         let truth = surface_quality(&mesh, &surface, &Constant(Tensor3::IDENTITY)).unwrap();
         assert_close(&surface_quality(&mesh, &surface, &Thick).unwrap(), &truth, 1e-9);
@@ -265,15 +259,15 @@ mod tests {
                 let along = Vector3::new(0.0, 1.0, 0.0);
                 TangentPlane { u: around, v: along, normal: around.cross(along) }.extend(m, 77.0)
             };
-            let found = surface_quality(&rolled, &Surface::new(&rolled).unwrap(), &field).unwrap();
+            let found = surface_quality(&rolled, &Manifold::of(&rolled).unwrap(), &field).unwrap();
             assert_close(&found, &truth, 5.0 / (radius * radius));
         }
     }
 
     #[test]
     fn faults_are_errors_and_threads_do_not_matter() {
-        let surface = sphere(2.0, 0.4).unwrap();
-        let mesh = surface.to_mesh();
+        let surface = Manifold::new(sphere(2.0, 0.4).unwrap(), None);
+        let mesh = surface.whole_mesh();
         let nan = surface_quality(&mesh, &surface, &|_: Point3| Tensor3::IDENTITY * f64::NAN);
         assert!(matches!(nan, Err(crate::Error::Metric { .. })));
         let empty = surface_quality(&Mesh::default(), &surface, &Constant(Tensor3::IDENTITY));

@@ -5,11 +5,11 @@ use super::{Found, GeodesicEdge, Grid, Realisation, View};
 use crate::canvas::Way;
 use crate::diagram::SurfaceDiagram;
 use crate::geometry::{Point, Point3};
+use crate::manifold::Chart;
 use crate::mesh::Edges;
 use crate::metric::MetricField;
 use crate::net::SeedsOnSurface;
 use crate::parallel::prelude::*;
-use crate::surface::Chart;
 use crate::triangulation::VertexId;
 use std::iter;
 

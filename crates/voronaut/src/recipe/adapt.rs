@@ -1,17 +1,10 @@
 //! The mesh adapted to a solution, again and again: solve, recover, mesh, carry over.
 
-use super::{
-    GradedAt, MeshOptions, Meshed, MetricOptions, PlanarMetric, SurfaceSource, mesh_for, mesh_surface,
-    metric_of_function, metric_of_solution, metric_on_surface,
-};
-use crate::domain::Domain;
+use super::{GradedAt, MeshOptions, Meshed, MetricOptions};
 use crate::error::{Error, Result};
-use crate::geometry::Point;
 use crate::mesh::{Mesh, SolutionValues, Solutions};
-use crate::metric::{Expression, ScalarField, Snapshot, Uniform};
+use crate::metric::Expression;
 use crate::progress::Progress;
-use crate::surface::Input;
-use crate::surface::metric::Spec;
 use crate::transfer::{Carried, Cover, TransferOptions, carry};
 use std::collections::BTreeSet;
 
@@ -30,16 +23,43 @@ pub struct LoopOptions {
     pub transfer: TransferOptions,
 }
 
+impl LoopOptions {
+    /// In which multiple of the metric edges are to have length one.
+    pub(super) fn graded_at(&self) -> GradedAt {
+        GradedAt::of(self.mesh.vertices, self.mesh.complexity)
+    }
+}
+
 /// A user's solver: from the number of the step, a mesh and solutions there to start from (`None` at first) to solutions there.
 pub(crate) type Solver<'a> = dyn FnMut(usize, &Mesh, Option<&Solutions>) -> Result<Solutions> + 'a;
 
-/// What the meshes are of.
-#[derive(Clone, Copy, Debug)]
-pub enum Ground<'a> {
-    /// A planar domain.
-    Plane(&'a Domain),
-    /// A surface, cut open along the features that are to be kept.
-    Surface(&'a Input),
+/// What meshes are adapted on: a planar domain, or a surface that was cut open along the features that are to be kept.
+pub trait Adaptive {
+    /// Coordinates of a point: 2 or 3.
+    fn dimension(&self) -> u8;
+
+    /// The mesh for a function at one time, and its values at the vertices.
+    ///
+    /// # Errors
+    /// Those of its metric and of meshing.
+    fn mesh_at_time(
+        &self,
+        function: &Expression,
+        time: f64,
+        options: &LoopOptions,
+        progress: &dyn Progress,
+    ) -> Result<(Meshed, Vec<f64>)>;
+
+    /// The mesh for a solution on another mesh; without one an even mesh.
+    ///
+    /// # Errors
+    /// Those of its metric and of meshing.
+    fn mesh_for_solution(
+        &self,
+        solution: Option<(&Mesh, &SolutionValues)>,
+        options: &LoopOptions,
+        progress: &dyn Progress,
+    ) -> Result<Meshed>;
 }
 
 /// What the meshes are for.
@@ -73,15 +93,15 @@ pub struct Step {
 /// of one label are placed anew each time, so that their number follows the metric and does not grow with the steps.
 ///
 /// # Errors
-/// Those of the solver, of `each`, of meshing ([`mesh_for`], [`mesh_surface`]), recovery and transfer ([`carry`]), with the number of the step.
+/// Those of the solver, of `each`, of meshing ([`super::mesh_for`], [`super::mesh_surface`]), recovery and transfer ([`carry`]), with the number of the step.
 pub fn adapt(
-    ground: Ground,
+    on: &dyn Adaptive,
     source: Source,
     options: &LoopOptions,
     progress: &dyn Progress,
     each: &mut dyn FnMut(&Step) -> Result<()>,
 ) -> Result<()> {
-    let work = Work { ground, options, progress };
+    let work = Work { on, options, progress };
     match source {
         Source::Formula(function, times) => work.follow(&function, times, each),
         Source::Solver(solver) => work.solve(solver, each),
@@ -89,7 +109,7 @@ pub fn adapt(
 }
 
 struct Work<'a> {
-    ground: Ground<'a>,
+    on: &'a dyn Adaptive,
     options: &'a LoopOptions,
     progress: &'a dyn Progress,
 }
@@ -106,7 +126,7 @@ impl Work<'_> {
         for number in 1..=steps {
             let share = (number - 1) as f64 / (steps.max(2) - 1) as f64;
             let time = first + share * (last - first);
-            let (meshed, values) = self.at_time(function, time)?;
+            let (meshed, values) = self.on.mesh_at_time(function, time, self.options, self.progress)?;
             let carry = |(mesh, values)| self.carry(&mesh, &meshed.mesh, &self.solutions(vec![values]));
             let carried = before.take().map(carry).transpose()?;
             let values = SolutionValues::Scalar(values);
@@ -122,13 +142,13 @@ impl Work<'_> {
     }
 
     fn solve(&self, solver: &mut Solver, each: &mut dyn FnMut(&Step) -> Result<()>) -> Result<()> {
-        let mut step = Step::new(0, None, self.even()?, self.solutions(Vec::new()), None);
+        let mut step = Step::new(0, None, self.mesh(None)?, self.solutions(Vec::new()), None);
         each(&step)?;
         for number in 1..=self.options.iterations {
             let mesh = &step.meshed.mesh;
             let found = solver(number, mesh, Some(&step.solutions).filter(|_| number > 1))?;
             let values = self.chosen(&found)?;
-            let meshed = self.for_solution(mesh, values)?;
+            let meshed = self.mesh(Some((mesh, values)))?;
             let (solutions, transfer) = self.carry(mesh, &meshed.mesh, &found)?;
             step = Step::new(number, None, meshed, solutions, Some(transfer));
             each(&step)?;
@@ -136,67 +156,12 @@ impl Work<'_> {
         Ok(())
     }
 
-    fn graded_at(&self) -> GradedAt {
-        GradedAt::of(self.options.mesh.vertices, self.options.mesh.complexity)
-    }
-
-    /// The mesh for a function at one time, and its values there.
-    fn at_time(&self, function: &Expression, time: f64) -> Result<(Meshed, Vec<f64>)> {
-        match self.ground {
-            Ground::Plane(domain) => {
-                let now = Snapshot { expression: function.clone(), time };
-                let metric = metric_of_function(&now, domain, &self.options.metric, self.graded_at())?;
-                let meshed = self.in_plane(domain, &metric)?;
-                let value = |&[x, y, _]: &[f64; 3]| now.value(Point::new(x, y));
-                let values = meshed.mesh.points.iter().map(value).collect();
-                Ok((meshed, values))
-            }
-            Ground::Surface(input) => {
-                let now = function.at_time(time);
-                let meshed = self.on_surface(input, SurfaceSource::Named(&Spec::Hessian(now.clone())))?;
-                let values = meshed.mesh.points.iter().map(|&[x, y, z]| now.at(x, y, z)).collect();
-                Ok((meshed, values))
-            }
-        }
-    }
-
-    fn even(&self) -> Result<Meshed> {
-        match self.ground {
-            Ground::Plane(domain) => self.in_plane(domain, &PlanarMetric::plain(Uniform::default())),
-            Ground::Surface(input) => self.on_surface(input, SurfaceSource::Named(&Spec::Uniform)),
-        }
-    }
-
-    fn for_solution(&self, mesh: &Mesh, values: &SolutionValues) -> Result<Meshed> {
-        match self.ground {
-            Ground::Plane(domain) => {
-                let metric = metric_of_solution(mesh, values, domain, &self.options.metric, self.graded_at())?;
-                self.in_plane(domain, &metric)
-            }
-            Ground::Surface(input) => self.on_surface(input, SurfaceSource::Solution(mesh, values)),
-        }
-    }
-
-    fn in_plane(&self, domain: &Domain, metric: &PlanarMetric) -> Result<Meshed> {
-        let aim = metric.aim(self.options.metric.norm);
-        mesh_for(domain, metric.field.as_ref(), aim, &self.options.mesh, self.progress)
-    }
-
-    fn on_surface(&self, input: &Input, source: SurfaceSource) -> Result<Meshed> {
-        let function = match source {
-            SurfaceSource::Named(Spec::Hessian(function)) if !self.options.metric.is_limiting() => {
-                Some(function.clone())
-            }
-            _ => None,
-        };
-        let metric = metric_on_surface(source, input, &self.options.metric, self.graded_at())?;
-        let aim = function.as_ref().map(|function| (function, self.options.metric.norm));
-        mesh_surface(input, metric.as_ref(), aim, &self.options.mesh, self.progress)
+    fn mesh(&self, solution: Option<(&Mesh, &SolutionValues)>) -> Result<Meshed> {
+        self.on.mesh_for_solution(solution, self.options, self.progress)
     }
 
     fn solutions(&self, vertices: Vec<SolutionValues>) -> Solutions {
-        let dimension = if matches!(self.ground, Ground::Plane(_)) { 2 } else { 3 };
-        Solutions { dimension, vertices, triangles: Vec::new() }
+        Solutions { dimension: self.on.dimension(), vertices, triangles: Vec::new() }
     }
 
     fn carry(&self, old: &Mesh, new: &Mesh, solutions: &Solutions) -> Result<(Solutions, (Vec<Carried>, Cover))> {

@@ -4,11 +4,12 @@ use super::field::{GradedAt, MetricOptions};
 use super::surface_field::{SurfaceSource, named, spread_values};
 use crate::error::Result;
 use crate::geometry::{TangentPlane, Tensor, Tensor3};
+use crate::manifold::Manifold;
+use crate::manifold::surface::FeatureOptions;
+use crate::manifold::surface::metric::{CovariantHessian, Spec, SurfaceMetric, TangentPlanes, filled, hessians_on};
 use crate::mesh::{Solution, SolutionValues};
 use crate::metric::Norm;
 use crate::metric::nodal::{Limit, Limits, Outcome, Pipeline, Source, Vertices, complexity, weighted};
-use crate::surface::metric::{CovariantHessian, Spec, SurfaceMetric, TangentPlanes, filled, hessians_on};
-use crate::surface::{FeatureOptions, Input, Surface};
 
 /// The metric that several make at the vertices of a surface: steps, limits and figures are those of [`Pipeline`], tensors those of tangent
 /// planes. The surface is cut along its features, so that each of its sides has a metric of its own; a vertex of several sides then gets a
@@ -20,24 +21,24 @@ use crate::surface::{FeatureOptions, Input, Surface};
 /// As of [`Pipeline::run`] and [`super::metric_on_surface`].
 pub fn metric_at_vertices(
     pipeline: &Pipeline,
-    surface: Surface,
+    surface: Manifold,
     sources: Vec<SurfaceSource>,
 ) -> Result<(Outcome, Solution)> {
-    let input = Input::new(surface, None).cut(&FeatureOptions::default())?;
+    let input = surface.cut(&FeatureOptions::default())?;
     let vertices = TangentPlanes::to_join(&input);
     let pipeline = Pipeline { limits: spread(&pipeline.limits, &input)?, ..pipeline.clone() };
     let sources = sources.into_iter().map(|source| at(source, &input, &vertices)).collect::<Result<Vec<_>>>()?;
     let made = pipeline.run_on(&vertices, &sources)?;
     let joined = vertices.joined(&made.tensors);
     let tensors = vertices.seen(&joined);
-    let entries = joined[..input.seams.vertices_before()].iter().map(|m| m.to_disk()).collect();
+    let entries = joined[..input.seams().vertices_before()].iter().map(|m| m.to_disk()).collect();
     let outcome = Outcome { complexity: complexity(&vertices, &tensors), tensors, ..made };
     Ok((outcome, Solution { dimension: 3, values: SolutionValues::Tensor3(entries) }))
 }
 
 /// What a source says at the vertices.
-fn at(source: SurfaceSource, input: &Input, vertices: &TangentPlanes) -> Result<Source> {
-    let surface = &input.surface;
+fn at(source: SurfaceSource, input: &Manifold, vertices: &TangentPlanes) -> Result<Source> {
+    let surface = input.surface();
     match source {
         SurfaceSource::Implied => Ok(Source::Metric(vertices.implied()?)),
         SurfaceSource::Function(values) => {
@@ -76,9 +77,9 @@ fn at(source: SurfaceSource, input: &Input, vertices: &TangentPlanes) -> Result<
 }
 
 /// Limits at the vertices of the surface, as limits at those that it has since it was cut.
-fn spread(limits: &Limits, input: &Input) -> Result<Limits> {
-    limits.check(input.seams.vertices_before())?;
-    let originals = input.seams.originals();
+fn spread(limits: &Limits, input: &Manifold) -> Result<Limits> {
+    limits.check(input.seams().vertices_before())?;
+    let originals = input.seams().originals();
     let spread = |limit: &Option<Limit>| match limit {
         Some(Limit::Field(values)) => Some(Limit::Field(originals.iter().map(|&v| values[v as usize]).collect())),
         other => other.clone(),
@@ -89,9 +90,9 @@ fn spread(limits: &Limits, input: &Input) -> Result<Limits> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::manifold::surface::{sphere, torus};
     use crate::mesh::Mesh;
     use crate::metric::{Bounds, recover_hessian};
-    use crate::surface::{sphere, torus};
     use crate::test_cases::cube;
     use std::collections::BTreeMap;
 
@@ -160,7 +161,7 @@ mod tests {
             .unwrap();
         let given = sizes(given);
         let sources = vec![SurfaceSource::Function(&values), SurfaceSource::Values(&given), SurfaceSource::Implied];
-        let (made, solution) = metric_at_vertices(&pipeline, Surface::new(&mesh).unwrap(), sources).unwrap();
+        let (made, solution) = metric_at_vertices(&pipeline, Manifold::of(&mesh).unwrap(), sources).unwrap();
         assert!((made.complexity / 700.0 - 1.0).abs() < 1e-6, "{}", made.complexity);
         // Gradation between planes settles to a hundredth of a size.
         for (found, truth) in tensors(&solution).iter().zip(&in_plane.tensors) {
@@ -173,8 +174,8 @@ mod tests {
     /// Along great circles of the unit sphere x is a sine: its second derivatives are -x in all directions.
     #[test]
     fn coordinates_of_the_sphere_have_the_sizes_of_their_closed_form() {
-        let surface = sphere(1.0, 0.08).unwrap();
-        let values: Vec<f64> = surface.positions().iter().map(|p| p.x).collect();
+        let surface = || Manifold::new(sphere(1.0, 0.08).unwrap(), None);
+        let values: Vec<f64> = surface().positions().iter().map(|p| p.x).collect();
         let x = Spec::parse("hessian:x").unwrap();
         let complexity = 2000.0;
         let pipeline =
@@ -182,9 +183,9 @@ mod tests {
         // In the maximum norm M = c |x| I; the integral of |x| over the sphere is 2 pi.
         let c = complexity / std::f64::consts::TAU;
         for source in [SurfaceSource::Function(&values), SurfaceSource::Named(&x)] {
-            let (made, solution) = metric_at_vertices(&pipeline, surface.clone(), vec![source]).unwrap();
+            let (made, solution) = metric_at_vertices(&pipeline, surface(), vec![source]).unwrap();
             assert!((made.complexity / complexity - 1.0).abs() < 1e-9);
-            for (m, p) in tensors(&solution).iter().zip(surface.positions()).filter(|(_, p)| p.x.abs() > 0.2) {
+            for (m, p) in tensors(&solution).iter().zip(surface().positions()).filter(|(_, p)| p.x.abs() > 0.2) {
                 let plane = TangentPlane::new((*p - crate::geometry::Point3::default()).unit().unwrap());
                 let d = plane.restrict(*m) + Tensor::IDENTITY * (-c * p.x.abs());
                 assert!(d.xx.abs() + d.xy.abs() + d.yy.abs() < 0.03 * c, "{p} {d:?}");
@@ -194,7 +195,7 @@ mod tests {
 
     #[test]
     fn even_triangles_imply_sizes_that_count_them() {
-        let surface = torus(2.0, 0.7, 0.1).unwrap();
+        let surface = Manifold::new(torus(2.0, 0.7, 0.1).unwrap(), None);
         let triangles = surface.topology().faces().count() as f64;
         let (made, _) = metric_at_vertices(&Pipeline::default(), surface, vec![SurfaceSource::Implied]).unwrap();
         let count = made.complexity / (0.75_f64.sqrt() / 2.0);
@@ -206,19 +207,18 @@ mod tests {
     #[test]
     fn sides_of_a_crease_have_one_tensor() {
         let mesh = welded_cube(6);
-        let surface = Surface::new(&mesh).unwrap();
+        let surface = || Manifold::of(&mesh).unwrap();
         let given = sizes(vec![0.2; mesh.points.len()]);
         let pipeline = Pipeline { gradation_factor: None, ..Pipeline::default() };
-        let (made, solution) =
-            metric_at_vertices(&pipeline, surface.clone(), vec![SurfaceSource::Values(&given)]).unwrap();
+        let (made, solution) = metric_at_vertices(&pipeline, surface(), vec![SurfaceSource::Values(&given)]).unwrap();
         assert!(tensors(&solution).iter().all(|m| (m.xx - 25.0).abs() + m.xy.abs() + (m.zz - 25.0).abs() < 1e-9));
         assert!((made.complexity / 150.0 - 1.0).abs() < 1e-9, "{}", made.complexity);
         let thin = Spec::parse("formula:1; 0; 4; 0; 0; 400").unwrap();
         let (made, solution) =
-            metric_at_vertices(&Pipeline::default(), surface.clone(), vec![SurfaceSource::Named(&thin)]).unwrap();
+            metric_at_vertices(&Pipeline::default(), surface(), vec![SurfaceSource::Named(&thin)]).unwrap();
         let sides = 2.0 * (2.0 + 20.0 + 40.0);
         assert!((made.complexity / sides - 1.0).abs() < 1e-9, "{}", made.complexity);
-        for (m, p) in tensors(&solution).iter().zip(surface.positions()) {
+        for (m, p) in tensors(&solution).iter().zip(surface().positions()) {
             let is_crease = p.to_array().iter().filter(|x| (*x - 0.5).abs() > 0.499).count() > 1;
             let d = *m + Tensor3::from_disk([1.0, 0.0, 4.0, 0.0, 0.0, 400.0]) * -1.0;
             assert!(!is_crease || d.to_disk().iter().all(|entry| entry.abs() < 1e-9), "{p} {m:?}");
@@ -228,14 +228,13 @@ mod tests {
     #[test]
     fn limits_of_vertices_are_those_of_the_file() {
         let mesh = welded_cube(4);
-        let surface = Surface::new(&mesh).unwrap();
+        let surface = || Manifold::of(&mesh).unwrap();
         let uniform = Spec::parse("uniform").unwrap();
         let limit = |h_max: Vec<f64>| Pipeline {
             limits: Limits { h_max: Some(Limit::Field(h_max)), ..Limits::default() },
             ..Pipeline::default()
         };
-        let made =
-            |pipeline: &Pipeline| metric_at_vertices(pipeline, surface.clone(), vec![SurfaceSource::Named(&uniform)]);
+        let made = |pipeline: &Pipeline| metric_at_vertices(pipeline, surface(), vec![SurfaceSource::Named(&uniform)]);
         let wanted: Vec<f64> = (0..mesh.points.len()).map(|v| if v % 2 == 0 { 0.5 } else { 3.0 }).collect();
         let (_, solution) = made(&limit(wanted)).unwrap();
         for (v, m) in tensors(&solution).iter().enumerate() {

@@ -4,16 +4,16 @@ use super::{SeedDual, dual, net, surface_dual, surface_net};
 use crate::canvas::{BYTES_PER_VERTEX, Canvas, Draped, Kind, VERTICES_PER_SEED, size_for};
 use crate::certificate::{Area, Certificate, Constants, longest_edge, sized_canvas};
 use crate::diagram::{Diagram, SurfaceDiagram};
-use crate::domain::Domain;
 use crate::dual::Road;
 use crate::error::{Error, Result};
 use crate::geodesic::Method;
 use crate::geometry::Point;
+use crate::manifold::surface::metric::SurfaceMetric;
+use crate::manifold::{Manifold, Place};
 use crate::metric::MetricField;
+use crate::planar::Planar;
 use crate::progress::Silent;
 use crate::sampling::demand_memory;
-use crate::surface::metric::SurfaceMetric;
-use crate::surface::{Input, Place};
 use crate::triangulation::VertexId;
 
 /// Canvases are made so much finer than what they are asked for, so that errors of distances have room.
@@ -30,7 +30,7 @@ const ROUNDS: usize = 3;
 /// that would is estimated to need more memory than `memory_limit` bytes; as for [`Canvas::new`].
 pub fn certified_canvas(
     kind: Kind,
-    domain: &Domain,
+    domain: &Planar,
     field: &dyn MetricField,
     seeds: &[Point],
     constants: Constants,
@@ -61,7 +61,7 @@ pub fn certified_canvas(
 /// As for [`certified_canvas`] and [`Canvas::on_surface`].
 pub fn certified_canvas_on<'s>(
     kind: Kind,
-    input: &'s Input,
+    input: &'s Manifold,
     metric: &'s dyn SurfaceMetric,
     seeds: &[Place],
     constants: Constants,

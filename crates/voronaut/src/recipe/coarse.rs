@@ -1,8 +1,9 @@
 //! Seeds from those of coarser meshes, which are relaxed and whose edges are then halved: few seeds are put one by one, and what is far
 //! apart is even from the start. (Two grids: Hateley, Wei and Chen 2015.)
 
+use super::MeshOptions;
 use super::options::{Centroid, Seeding};
-use super::{Job, MeshOptions};
+use super::plane::Job;
 use crate::dual::{Dual, Moving};
 use crate::error::Result;
 use crate::geodesic::LocalMetric;
@@ -109,7 +110,7 @@ impl<'a> Job<'a> {
     }
 
     fn sampled(&self, plan: &Plan, scale: f64, level: usize) -> Result<Dual<'a>> {
-        let mut dual = Dual::new(&plan.domain, Scaled { field: self.field, factor: factor(scale, level) })?;
+        let mut dual = Dual::new(plan.domain.corners(), Scaled { field: self.field, factor: factor(scale, level) })?;
         sample_segments(&mut dual, &plan.edges, &plan.arcs, scale, level as u32);
         Ok(dual)
     }
@@ -131,10 +132,11 @@ fn before_halving(dual: &Dual, finer: usize) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::super::settle::Stopwatch;
+    use super::super::plane::Case;
+    use super::super::stopwatch::Stopwatch;
     use super::*;
-    use crate::domain::Domain;
     use crate::geometry::{Point, Tensor};
+    use crate::manifold::domain::Domain;
     use crate::metric::{MetricField, Shock};
     use crate::progress::Silent;
     use crate::sampling::Target;
@@ -143,7 +145,7 @@ mod tests {
     /// The level that a mesh of so many vertices starts from, and how many vertices come of it.
     fn level(domain: &Domain, field: &dyn MetricField, count: usize) -> (usize, usize) {
         let (options, watch) = (MeshOptions::default(), Stopwatch::new(&Silent));
-        let job = Job::new(field, &options, &watch);
+        let job = Job::new(&Case { domain, field, aim: None, options: &options, progress: &Silent }, &watch);
         let plan = Plan::new(domain.clone(), Vec::new(), field, Target::Vertices(count)).unwrap();
         let scale = plan.scale_for(count as f64);
         let counts = job.counts(&plan, count, scale);

@@ -1,17 +1,17 @@
 //! Meshes of order 2 and 3.
 
-use super::settle::Stopwatch;
-use super::{Aim, Boundary, MeshOptions, Meshed, Mesher, mesh_for, mesh_straight};
+use super::plane::Case;
+use super::stopwatch::Stopwatch;
+use super::{Aim, Boundary, MeshOptions, Meshed, Mesher};
 use crate::curved::{Away, POWERS, Tempered, curved, interpolating, onto_surface};
-use crate::domain::{Domain, Splines};
 use crate::error::{Error, Result};
 use crate::geometry::Point;
+use crate::manifold::Manifold;
+use crate::manifold::domain::Splines;
 use crate::mesh::Mesh;
-use crate::metric::{MetricField, Scaled, complexity};
+use crate::metric::{Scaled, complexity};
 use crate::optimise::{Patience, polishing_norm};
-use crate::progress::Progress;
 use crate::quality::{self, Meetings, Validity};
-use crate::surface::Input;
 
 /// Half the square root of 3: the metric area that a unit mesh has for each vertex, two equilateral triangles.
 const AREA_PER_VERTEX: f64 = 0.866_025_403_784_438_6;
@@ -38,20 +38,14 @@ pub(super) fn demand_possible(options: &MeshOptions) -> Result<()> {
 ///
 /// # Errors
 /// As for [`mesh_for`].
-pub(super) fn mesh_curved(
-    domain: &Domain,
-    field: &dyn MetricField,
-    aim: Option<Aim>,
-    options: &MeshOptions,
-    progress: &dyn Progress,
-) -> Result<Meshed> {
-    let is_known = |aim: &Aim| aim.function.jet(domain.triangles()[0][0]).is_some();
-    match aim {
-        Some(aim) if is_known(&aim) => mesh_for_function(domain, field, aim, options, progress),
+pub(super) fn mesh_curved(case: &Case) -> Result<Meshed> {
+    let is_known = |aim: &Aim| aim.function.jet(case.domain.planar().triangles()[0][0]).is_some();
+    match case.aim {
+        Some(aim) if is_known(&aim) => mesh_for_function(case, aim),
         _ => {
-            let mut meshed = mesh_by_metric(domain, field, options, progress)?;
+            let mut meshed = mesh_by_metric(case)?;
             let note = "curved triangles follow the metric: they are polished for functions whose derivatives are known, formulas";
-            meshed.notes.extend(aim.map(|_| note.into()));
+            meshed.notes.extend(case.aim.map(|_| note.into()));
             Ok(meshed)
         }
     }
@@ -59,18 +53,12 @@ pub(super) fn mesh_curved(
 
 /// First a straight mesh of the metric, which is that of interpolation by polynomials of the order; then all points are moved to where the error is
 /// least.
-fn mesh_for_function(
-    domain: &Domain,
-    field: &dyn MetricField,
-    aim: Aim,
-    options: &MeshOptions,
-    progress: &dyn Progress,
-) -> Result<Meshed> {
-    let watch = Stopwatch::new(progress);
+fn mesh_for_function(case: &Case, aim: Aim) -> Result<Meshed> {
+    let (options, progress, watch) = (case.options, case.progress, Stopwatch::new(case.progress));
     let straight = MeshOptions { order: 1, ..options.clone() };
-    let start = mesh_straight(domain, field, None, options.polish == 0, &straight, progress)?;
-    let unit = Scaled { field, factor: start.metric_scale };
-    let curves = is_bent(domain, options.boundary).then(|| Splines::of(domain));
+    let start = Case { aim: None, options: &straight, ..*case }.mesh_straight(options.polish == 0)?;
+    let unit = Scaled { field: case.field, factor: start.metric_scale };
+    let curves = curves(case);
     let patience = Patience { steps: options.polish, gain: options.effort.gain_of_polishing() };
     let target = (aim.function, polishing_norm(aim.norm));
     let work = || interpolating(&start.mesh, curves.as_ref(), &unit, options.order, target, patience, progress);
@@ -80,21 +68,18 @@ fn mesh_for_function(
 
 /// First a straight mesh of the metric made less anisotropic, then curved, and on to the metric as it is. With a number of vertices given the factor on the
 /// metric is that for which all triangles of so many vertices, but for the boundary's, could have the area of equilateral ones with unit sides.
-fn mesh_by_metric(
-    domain: &Domain,
-    field: &dyn MetricField,
-    options: &MeshOptions,
-    progress: &dyn Progress,
-) -> Result<Meshed> {
+fn mesh_by_metric(case: &Case) -> Result<Meshed> {
+    let Case { field, options, progress, .. } = *case;
     let watch = Stopwatch::new(progress);
     let mild = Tempered { field, power: POWERS[0] };
-    let start = mesh_for(domain, &mild, None, &MeshOptions { order: 1, ..options.clone() }, progress)?;
+    let straight = MeshOptions { order: 1, ..options.clone() };
+    let start = Case { field: &mild, aim: None, options: &straight, ..*case }.mesh()?;
     let metric_scale = match (options.vertices, options.complexity) {
-        (Some(count), _) => count as f64 * AREA_PER_VERTEX / complexity(field, &domain.triangles())?,
+        (Some(count), _) => count as f64 * AREA_PER_VERTEX / complexity(field, &case.domain.planar().triangles())?,
         _ => start.metric_scale,
     };
     let unit = Scaled { field, factor: metric_scale };
-    let curves = is_bent(domain, options.boundary).then(|| Splines::of(domain));
+    let curves = curves(case);
     let (mesh, away) = watch.time("curve", || curved(&start.mesh, curves.as_ref(), &unit, options.order, progress))?;
     finished(Meshed { metric_scale, ..start }, mesh, away, &watch, curves.is_some())
 }
@@ -126,8 +111,8 @@ fn demand_valid(mesh: &Mesh, is_bent: bool) -> Result<Validity> {
 ///
 /// # Errors
 /// [`Error::Unsupported`].
-pub(super) fn demand_possible_on(input: &Input, options: &MeshOptions) -> Result<()> {
-    if options.order > 1 && input.implicit.is_none() {
+pub(super) fn demand_possible_on(input: &Manifold, options: &MeshOptions) -> Result<()> {
+    if options.order > 1 && input.equation().is_none() {
         let help = "give an equation (`sphere:`, `torus:`, or f = 0), or use `order` 1";
         return Err(Error::unsupported("curved triangles on a surface of triangles", help));
     }
@@ -141,7 +126,7 @@ pub(super) fn demand_possible_on(input: &Input, options: &MeshOptions) -> Result
 ///
 /// # Errors
 /// The mesh would not be valid.
-pub(super) fn curve_onto(meshed: &mut Meshed, input: &Input, meetings: &Meetings, order: usize) -> Result<()> {
+pub(super) fn curve_onto(meshed: &mut Meshed, input: &Manifold, meetings: &Meetings, order: usize) -> Result<()> {
     if order == 1 {
         return Ok(());
     }
@@ -154,11 +139,13 @@ pub(super) fn curve_onto(meshed: &mut Meshed, input: &Input, meetings: &Meetings
     meshed.validity.demand()
 }
 
-/// Whether boundaries are bent onto curves. That a domain allows chords to stray says that its segments stand for a curve.
-fn is_bent(domain: &Domain, boundary: Boundary) -> bool {
-    match boundary {
+/// The curves that boundaries are bent onto, if they are. That a domain allows chords to stray says that its segments stand for a curve.
+fn curves(case: &Case) -> Option<Splines> {
+    let graph = case.domain.pslg();
+    let is_bent = match case.options.boundary {
         Boundary::Polyline => false,
         Boundary::Spline => true,
-        Boundary::Auto => domain.pslg().tolerance > 0.0,
-    }
+        Boundary::Auto => graph.tolerance > 0.0,
+    };
+    is_bent.then(|| Splines::of(graph))
 }

@@ -5,13 +5,13 @@ use crate::dual::Road;
 use crate::figures;
 use crate::geometry::{Point, Point3};
 use crate::lists::in_order;
+use crate::manifold::{Manifold, Place};
 use crate::mesh::Mesh;
 use crate::metric::MetricField;
 use crate::net::{Memory, Net, SeedsOnSurface, Simplices};
 use crate::planar::Location;
 use crate::progress::Progress;
 use crate::rdt::{Edge, Judge, OnSurface, Rdt, Start, Trust};
-use crate::surface::{Input, Place};
 use crate::triangulation::HalfEdge;
 use std::collections::HashSet;
 
@@ -194,8 +194,8 @@ pub fn surface_dual(diagram: &SurfaceDiagram, road: Road, progress: &dyn Progres
 }
 
 /// Triangles of seeds on a surface as a mesh: vertex i is seed i, with the region labels of the surface.
-pub fn surface_mesh(input: &Input, places: &[Place], triangles: Vec<[u32; 3]>) -> Mesh {
-    let topology = input.surface.topology();
+pub fn surface_mesh(input: &Manifold, places: &[Place], triangles: Vec<[u32; 3]>) -> Mesh {
+    let topology = input.topology();
     let label = |t: &[u32; 3]| {
         let corners = t.map(|v| places[v as usize].position);
         let middle = Point3::weighted(corners, [1.0 / 3.0; 3]);

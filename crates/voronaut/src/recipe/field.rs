@@ -2,9 +2,8 @@
 
 use super::Aim;
 use crate::canvas::{self, COARSE};
-use crate::domain::Domain;
 use crate::error::{Error, Result};
-use crate::geometry::{Point, Tensor};
+use crate::geometry::{Point, Tensor, Vector};
 use crate::mesh::{Mesh, SolutionValues};
 use crate::metric::nodal::{COMPLEXITY_PER_VERTEX, Pipeline, Source, Vertices, complexity};
 use crate::metric::{
@@ -82,7 +81,7 @@ pub(super) const LONGEST: f64 = 1.0 / 3.0;
 ///
 /// # Errors
 /// The limits contradict each other; smoothing asks for too many sweeps; as of [`crate::metric::nodal::Pipeline::run`].
-pub fn metric(spec: &MetricSpec, domain: &Domain, options: &MetricOptions, at: GradedAt) -> Result<PlanarMetric> {
+pub fn metric(spec: &MetricSpec, domain: &Planar, options: &MetricOptions, at: GradedAt) -> Result<PlanarMetric> {
     finished(named(spec, domain, options, at)?, domain, None, options, at)
 }
 
@@ -94,7 +93,7 @@ pub fn metric_of_values(
     mesh: &Mesh,
     values: &SolutionValues,
     place: &str,
-    domain: &Domain,
+    domain: &Planar,
     options: &MetricOptions,
     at: GradedAt,
 ) -> Result<PlanarMetric> {
@@ -113,7 +112,7 @@ pub fn metric_of_values(
 pub fn metric_of_solution(
     mesh: &Mesh,
     values: &SolutionValues,
-    domain: &Domain,
+    domain: &Planar,
     options: &MetricOptions,
     at: GradedAt,
 ) -> Result<PlanarMetric> {
@@ -130,7 +129,7 @@ pub fn metric_of_solution(
 /// As of [`metric`].
 pub fn metric_of_function(
     function: &Snapshot,
-    domain: &Domain,
+    domain: &Planar,
     options: &MetricOptions,
     at: GradedAt,
 ) -> Result<PlanarMetric> {
@@ -144,7 +143,7 @@ pub fn metric_of_function(
 pub fn metric_of_field(
     field: Box<dyn MetricField>,
     target_complexity: Option<f64>,
-    domain: &Domain,
+    domain: &Planar,
     options: &MetricOptions,
     at: GradedAt,
 ) -> Result<PlanarMetric> {
@@ -165,7 +164,7 @@ pub fn metric_of_field(
 /// As of [`metric`]; what the function says; its values are no metric.
 pub fn metric_of_samples(
     mut sample: impl FnMut(&[Point]) -> Result<Vec<Tensor>>,
-    domain: &Domain,
+    domain: &Planar,
     options: &MetricOptions,
     at: GradedAt,
 ) -> Result<PlanarMetric> {
@@ -188,12 +187,12 @@ pub fn metric_of_samples(
 /// # Errors
 /// As of [`MetricSpec::parse`] and [`metric`].
 #[cfg(test)]
-pub(crate) fn metric_named(text: &str, domain: &Domain) -> Result<Box<dyn MetricField>> {
+pub(crate) fn metric_named(text: &str, domain: &Planar) -> Result<Box<dyn MetricField>> {
     let made = metric(&MetricSpec::parse(text)?, domain, &MetricOptions::default(), GradedAt::Scale(1.0))?;
     Ok(made.field)
 }
 
-fn named(spec: &MetricSpec, domain: &Domain, options: &MetricOptions, at: GradedAt) -> Result<PlanarMetric> {
+fn named(spec: &MetricSpec, domain: &Planar, options: &MetricOptions, at: GradedAt) -> Result<PlanarMetric> {
     Ok(match spec {
         MetricSpec::Uniform(field) => PlanarMetric::plain(*field),
         MetricSpec::Swirl(field) => PlanarMetric::plain(*field),
@@ -204,7 +203,7 @@ fn named(spec: &MetricSpec, domain: &Domain, options: &MetricOptions, at: Graded
     })
 }
 
-fn optimal(function: &Snapshot, domain: &Domain, options: &MetricOptions, at: GradedAt) -> Result<PlanarMetric> {
+fn optimal(function: &Snapshot, domain: &Planar, options: &MetricOptions, at: GradedAt) -> Result<PlanarMetric> {
     let field = Hessian::new(function.clone(), options.norm, options.degree, &domain.triangles())?;
     let (field, scale) = within_domain(field, domain, at)?;
     Ok(PlanarMetric { field: Box::new(field), function: Some(Box::new(function.clone())), known_to: 0.0, scale })
@@ -213,7 +212,7 @@ fn optimal(function: &Snapshot, domain: &Domain, options: &MetricOptions, at: Gr
 fn recovered(
     mesh: &Mesh,
     values: &[f64],
-    domain: &Domain,
+    domain: &Planar,
     options: &MetricOptions,
     at: GradedAt,
 ) -> Result<PlanarMetric> {
@@ -226,12 +225,12 @@ fn recovered(
 
 /// The field with sizes of at most [`LONGEST`] of the domain's extent, in the multiple in which edges have length one; and that
 /// multiple.
-fn within_domain<F: MetricField + 'static>(field: F, domain: &Domain, at: GradedAt) -> Result<(Bounded<F>, f64)> {
+fn within_domain<F: MetricField + 'static>(field: F, domain: &Planar, at: GradedAt) -> Result<(Bounded<F>, f64)> {
     let scale = match at {
         GradedAt::Scale(scale) => scale,
         GradedAt::Complexity(target) => target / rough_complexity(&field, &domain.triangles())?,
     };
-    let extent = domain.bounds().extent();
+    let extent = domain.bounds().map_or(Vector::default(), |bounds| bounds.extent());
     let h_max = Some(LONGEST * extent.x.max(extent.y) * scale.sqrt());
     Ok((Bounded::new(field, Bounds { h_max, ..Bounds::default() })?, scale))
 }
@@ -248,7 +247,7 @@ pub(super) fn tensors(values: &SolutionValues, place: &str) -> Result<Vec<Tensor
 /// Limits, then smoothing, then gradation. A function counts only where none of them was asked for.
 fn finished(
     named: PlanarMetric,
-    domain: &Domain,
+    domain: &Planar,
     own: Option<&Mesh>,
     options: &MetricOptions,
     at: GradedAt,
@@ -281,8 +280,8 @@ pub(super) fn background_vertices(complexity: f64, fewest: usize) -> usize {
 
 /// A triangulation of the domain that is even in the metric, with so many vertices, and all of the domain's own; `coarse` as of
 /// [`canvas::even`].
-pub(super) fn even(field: &dyn MetricField, domain: &Domain, coarse: usize, vertices: usize) -> Result<Mesh> {
-    let Planar { topology, positions } = canvas::even(domain.planar(), field, coarse, vertices)?;
+pub(super) fn even(field: &dyn MetricField, domain: &Planar, coarse: usize, vertices: usize) -> Result<Mesh> {
+    let Planar { topology, positions } = canvas::even(domain, field, coarse, vertices)?;
     Ok(Mesh {
         points: positions.iter().map(|p| [p.x, p.y, 0.0]).collect(),
         triangles: topology.faces().map(|face| topology.corners(face).map(|v| v.0)).collect(),
@@ -300,7 +299,7 @@ pub(super) fn even(field: &dyn MetricField, domain: &Domain, coarse: usize, vert
 /// As for [`smoothed`].
 pub(super) fn smooth_metric(
     field: Box<dyn MetricField>,
-    domain: &Domain,
+    domain: &Planar,
     own: Option<&Mesh>,
     sweeps: u32,
 ) -> Result<Box<dyn MetricField>> {
@@ -340,7 +339,7 @@ impl GradedAt {
 /// As of [`Pipeline::run`]; the background is missing or no mesh.
 pub(super) fn grade_metric(
     field: Box<dyn MetricField>,
-    domain: &Domain,
+    domain: &Planar,
     own: Option<&Mesh>,
     gradation_factor: Option<f64>,
     at: GradedAt,
@@ -356,7 +355,7 @@ pub(super) fn grade_metric(
 }
 
 /// How many vertices the background of a metric has.
-fn vertices_for(field: &dyn MetricField, domain: &Domain, at: GradedAt) -> Result<usize> {
+fn vertices_for(field: &dyn MetricField, domain: &Planar, at: GradedAt) -> Result<usize> {
     match at {
         GradedAt::Complexity(target) => Ok(background_vertices(target, FEWEST)),
         GradedAt::Scale(scale) => {
@@ -391,6 +390,7 @@ pub(super) fn graded_at(on: &impl Vertices, tensors: &[Tensor], factor: f64, at:
 mod tests {
     use super::*;
     use crate::geometry::Vector;
+    use crate::manifold::domain::Domain;
 
     /// Sizes that jump by a thousand, across and along.
     fn jumping(p: Point) -> Tensor {
@@ -399,7 +399,7 @@ mod tests {
 
     fn jump(at: GradedAt, factor: f64) -> Box<dyn MetricField> {
         let domain = Domain::shape("rect:0,0,1,1").unwrap();
-        grade_metric(Box::new(jumping), &domain, None, Some(factor), at).unwrap()
+        grade_metric(Box::new(jumping), domain.planar(), None, Some(factor), at).unwrap()
     }
 
     #[test]
@@ -439,7 +439,8 @@ mod tests {
             calls += 1;
             Ok(points.iter().map(|&p| layer(p)).collect())
         };
-        let made = metric_of_samples(sample, &domain, &MetricOptions::default(), GradedAt::Complexity(1000.0)).unwrap();
+        let made = metric_of_samples(sample, domain.planar(), &MetricOptions::default(), GradedAt::Complexity(1000.0))
+            .unwrap();
         assert_eq!(calls, 3);
         for p in [Point::new(0.3, 0.37), Point::new(0.51, 0.3704), Point::new(0.2, 0.9)] {
             let ratio = made.field.at(p).yy / layer(p).yy;
@@ -447,7 +448,7 @@ mod tests {
         }
         let nothing = metric_of_samples(
             |p| Ok(vec![Tensor::new(f64::NAN, 0.0, 1.0); p.len()]),
-            &domain,
+            domain.planar(),
             &MetricOptions::default(),
             GradedAt::Scale(1.0),
         );
@@ -457,7 +458,7 @@ mod tests {
     #[test]
     fn without_a_factor_nothing_happens() {
         let domain = Domain::shape("rect:0,0,1,1").unwrap();
-        let same = grade_metric(Box::new(jumping), &domain, None, None, GradedAt::Complexity(9.0)).unwrap();
+        let same = grade_metric(Box::new(jumping), domain.planar(), None, None, GradedAt::Complexity(9.0)).unwrap();
         assert_eq!(same.at(Point::new(0.25, 0.123)), jumping(Point::new(0.25, 0.123)));
         assert_eq!(GradedAt::of(None, Some(7.0)), GradedAt::Complexity(7.0));
         assert_eq!(GradedAt::of(None, None), GradedAt::Scale(1.0));

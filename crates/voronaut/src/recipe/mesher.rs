@@ -1,15 +1,14 @@
 //! Which mesher; and the local Delaunay algorithm as one (RR-9103, section 7.1), to compare.
 
-use super::settle::Stopwatch;
-use super::{Job, MeshOptions, Meshed};
+use super::plane::{Case, Job};
+use super::stopwatch::Stopwatch;
+use super::{MeshOptions, Meshed};
 use crate::canvas::{Consistency, NEEDS_MORE, UNIT_RADIUS, consistent};
-use crate::domain::Domain;
 use crate::dual::{Dual, Kind, Moving};
 use crate::error::{Error, Result};
 use crate::figures;
-use crate::metric::{MetricField, Scaled, Steadied};
+use crate::metric::{Scaled, Steadied};
 use crate::optimise::Relaxed;
-use crate::progress::Progress;
 use crate::quality;
 use crate::sampling::{Plan, demand_memory};
 use crate::triangulation::VertexId;
@@ -28,15 +27,10 @@ const SPARE: usize = 1000;
 ///
 /// # Errors
 /// As for [`super::mesh`], and where stars do not come to agree or are no valid mesh.
-pub(super) fn by_stars(
-    domain: &Domain,
-    field: &dyn MetricField,
-    options: &MeshOptions,
-    progress: &dyn Progress,
-) -> Result<Meshed> {
-    let watch = Stopwatch::new(progress);
-    let mut job = Job::new(field, options, &watch);
-    let start = sampled(&mut job, domain, None)?;
+pub(super) fn by_stars(case: &Case) -> Result<Meshed> {
+    let (options, watch) = (case.options, Stopwatch::new(case.progress));
+    let mut job = Job::new(case, &watch);
+    let start = sampled(&mut job, None)?;
     let (scaled, unit) = (*start.dual.field(), start.dual.vertex_count());
     let mut meshed = agreed(&mut job, &start, &scaled, unit);
     for most in TURNS {
@@ -46,8 +40,9 @@ pub(super) fn by_stars(
         let steadied = Steadied { field: &scaled, most };
         let lloyd = options.lloyd.min(LLOYD);
         let as_it_is = MeshOptions { vertices: None, complexity: None, lloyd, ..options.clone() };
-        let mut steady = Job { notes: job.notes, ..Job::new(&steadied, &as_it_is, &watch) };
-        let start = sampled(&mut steady, domain, Some(unit))?;
+        let case = Case { field: &steadied, options: &as_it_is, ..*case };
+        let mut steady = Job { notes: job.notes, ..Job::new(&case, &watch) };
+        let start = sampled(&mut steady, Some(unit))?;
         meshed = agreed(&mut steady, &start, &scaled, unit);
         job.notes = steady.notes;
     }
@@ -68,8 +63,8 @@ struct Start<'a> {
 }
 
 /// Relaxed seeds; where the size of a unit mesh is given, an error if they are too many beside that.
-fn sampled<'a>(job: &mut Job<'a>, domain: &Domain, unit: Option<usize>) -> Result<Start<'a>> {
-    let (plan, count, scale) = job.watch.time("plan", || job.plan(domain))?;
+fn sampled<'a>(job: &mut Job<'a>, unit: Option<usize>) -> Result<Start<'a>> {
+    let (plan, count, scale) = job.watch.time("plan", || job.plan())?;
     let unit = unit.unwrap_or(count);
     if count > most(unit) {
         let what = format!("stars need about {count} vertices to agree, where a unit mesh has {unit}");
@@ -116,7 +111,8 @@ fn corner(dual: &Dual, v: VertexId) -> Option<u32> {
 mod tests {
     use super::*;
     use crate::geometry::{Point, Tensor, Vector};
-    use crate::metric::{Shock, Uniform};
+    use crate::manifold::domain::Domain;
+    use crate::metric::{MetricField, Shock, Uniform};
     use crate::progress::Silent;
     use crate::recipe;
     use crate::recipe::Mesher;

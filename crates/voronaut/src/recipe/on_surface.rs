@@ -1,30 +1,21 @@
-//! The main job on a surface.
+//! The steps of a mesh on a surface.
 
-use super::curved::{curve_onto, demand_possible_on};
-use super::settle::Stopwatch;
+use super::stopwatch::Stopwatch;
 use super::surface_pass::{Checked, Pass, Reseed, Setting, demand};
-use super::{Idle, MeshOptions, Meshed, Origin, Seeding, Task, closed_form_scale, protection};
+use super::{MeshOptions, Meshed, Seeding};
 use crate::dual::Moving;
 use crate::error::{Error, Result};
+use crate::manifold::Manifold;
+use crate::manifold::surface::Component;
+use crate::manifold::surface::metric::{SurfaceMetric, area_of_surface};
 use crate::mesh::Mesh;
 use crate::metric::{Expression, Norm};
 use crate::optimise::{FitOptions, Patience, Polished, fit, polish_on_surface, polishing_norm};
-use crate::progress::Progress;
-use crate::quality::{
-    self, Deviation, Meetings, Position, SurfaceFidelity, Validity, distances_around, interpolation_error_on,
-};
+use crate::quality::{self, Meetings, SurfaceFidelity, Validity, interpolation_error_on};
 use crate::sampling::{MeasuredCurves, demand_memory};
-use crate::surface::metric::{Closer, Finer, SurfaceMetric, area_of_surface};
-use crate::surface::{Component, Implicit, Input};
 
 /// Vertices of the triangles on which the surface is measured first: twice as many as are asked for, within this range; the most where no number is.
 const MEASURING: [usize; 2] = [5_000, 20_000];
-/// Rounds of more vertices for the sake of the distance to the surface at most.
-const ROUNDS: usize = 6;
-/// The second round that brings the distance down by less than this factor, beside the best before, is the last: something else than
-/// lengths of edges keeps it up. One may be chance, for a single triangle is what counts.
-const GAIN: f64 = 1.05;
-const IDLE_ROUNDS: usize = 2;
 /// Where the number of vertices misses what was asked for by a greater share, a note says why.
 const COUNT_TOLERANCE: f64 = 0.01;
 /// Where a mesh is none, it is made anew, so often at most; more and more of the surface's own triangles are kept,
@@ -39,87 +30,6 @@ const NEARLY: f64 = 1.25;
 const ROUNDING: f64 = 1e-9;
 /// Passes of farthest points, where these are asked for.
 const FARTHEST_PASSES: usize = 5;
-
-/// Meshes a surface by a metric: features at unit length, the surface's own triangles split and contracted to unit edges, relaxed in
-/// charts; with [`Seeding::Farthest`] seeds are farthest points on a canvas, with [`crate::dual::Road::Canvas`] edges are settled by
-/// geodesics on one. Vertices are on the surface. With a number of vertices asked for the metric is scaled
-/// by one factor to meet it; without one, and with a distance to the surface, it is made finer where the mesh would be farther ([`Meshed::finer`]). Features are kept if the surface was cut open along them ([`Input::cut`]); else borders only.
-///
-/// With a function of space and a norm the mesh is polished in the end, so that interpolating the function on it has the least error in that norm, as
-/// [`mesh_for`](super::mesh_for) does in the plane; the metric is that of the function's second derivatives.
-///
-/// # Errors
-/// The metric is invalid somewhere; the work would exceed the memory limit; there is no valid mesh with the vertices asked for;
-/// options that are for the plane; curved triangles of a surface without an equation; the function is not finite at a vertex.
-pub fn mesh_surface(
-    input: &Input,
-    metric: &dyn SurfaceMetric,
-    aim: Option<(&Expression, Norm)>,
-    options: &MeshOptions,
-    progress: &dyn Progress,
-) -> Result<Meshed> {
-    options.geodesic.demand_diagrams()?;
-    demand_possible_on(input, options)?;
-    protection::demand_possible(options)?;
-    options
-        .idle(Task {
-            on_surface: true,
-            is_drawn: true,
-            origin: if aim.is_some() { Origin::Function } else { Origin::Sizes },
-            ..Task::default()
-        })
-        .iter()
-        .try_for_each(Idle::demand_unset)?;
-    let is_open = options.vertices.is_none() && options.complexity.is_none();
-    let asked = options.hausd.filter(|&hausd| is_open && hausd > 0.0);
-    let closer = asked.map(|hausd| Closer::new(metric, input, hausd)).transpose()?;
-    let metric = closer.as_ref().map_or(metric, |closer| closer as &dyn SurfaceMetric);
-    let (meetings, watch) = (Meetings::of(input.whole_mesh()), Stopwatch::new(progress));
-    let (mut logs, mut scale) = (Vec::new(), None);
-    let (mut least, mut idle) = (f64::INFINITY, 0);
-    for round in 1.. {
-        let finer = Finer { field: metric, surface: &input.surface, logs: &logs };
-        let setting = Setting::new(input, &finer, aim, options, &meetings, &watch)?;
-        let plan = watch.time("plan", || setting.plan(scale))?;
-        let (mut meshed, fidelity) = setting.meshed(plan.count, plan.scale)?;
-        let distance = fidelity.as_ref().map_or(0.0, |found| found.both.hausdorff);
-        let ratio = options.hausd.map_or(0.0, |most| distance / most.max(f64::MIN_POSITIVE));
-        idle += usize::from(least < GAIN * ratio);
-        let is_last = options.vertices.is_some() || round == ROUNDS || idle == IDLE_ROUNDS;
-        if ratio > 1.0 && is_last {
-            let most = options.hausd.unwrap_or_default();
-            meshed.notes.push(format!("mesh and surface are {distance:.3e} apart where `hausd` asks for {most:.3e}"));
-        }
-        if ratio <= 1.0 || is_last {
-            watch.time("curve", || curve_onto(&mut meshed, input, &meetings, options.order))?;
-            let fidelity = if options.order > 1 { setting.fidelity(&meshed.mesh)? } else { fidelity };
-            let closed_form_scale = options.vertices.map(|count| closed_form_scale(count, plan.complexity));
-            return Ok(Meshed { fidelity, closed_form_scale, finer: logs, seconds: watch.seconds(), ..meshed });
-        }
-        (least, scale) = (least.min(ratio), Some(plan.scale));
-        logs = watch.time("check", || too_far(&meshed.mesh, input, &finer, distance / ratio, fidelity.as_ref()))?;
-    }
-    unreachable!("the last round returns")
-}
-
-/// The logarithms of factors with which the metric will be fine enough for a distance where the mesh is farther from the surface.
-fn too_far(
-    mesh: &Mesh,
-    input: &Input,
-    finer: &Finer,
-    allowed: f64,
-    found: Option<&SurfaceFidelity>,
-) -> Result<Vec<f64>> {
-    let implicit = input.implicit.as_ref().map(|f| f as &dyn Implicit);
-    let mut distances = distances_around(mesh, &input.surface, implicit);
-    if let Some(Deviation { at: Position::Space(at), hausdorff, .. }) = found.map(|found| found.both) {
-        for v in input.surface.topology().corners(input.closest(at.into())?.face) {
-            distances[v.index()] = distances[v.index()].max(hausdorff);
-        }
-    }
-    let ratios: Vec<f64> = distances.into_iter().map(|distance| distance / allowed).collect();
-    finer.asked(&ratios)
-}
 
 /// What a mesh is planned to be.
 pub(super) struct SurfacePlan {
@@ -141,8 +51,8 @@ fn area(mesh: &Mesh) -> f64 {
 }
 
 /// The triangles of an equation are ours: where they meet, that is no property of what the user gave.
-fn demand_apart(input: &Input, meetings: &Meetings) -> Result<()> {
-    match input.implicit.as_ref().and_then(|_| meetings.first()) {
+fn demand_apart(input: &Manifold, meetings: &Meetings) -> Result<()> {
+    match input.equation().and_then(|_| meetings.first()) {
         None => Ok(()),
         Some(place) => {
             let help = "give an equation whose sheets stay apart, or shorter edges for its triangles";
@@ -157,7 +67,7 @@ impl<'a> Setting<'a> {
     /// # Errors
     /// [`Error::Domain`] where triangles of an equation's surface meet.
     pub(super) fn new(
-        input: &'a Input,
+        input: &'a Manifold,
         metric: &'a dyn SurfaceMetric,
         aim: Option<(&'a Expression, Norm)>,
         options: &'a MeshOptions,
@@ -177,7 +87,7 @@ impl<'a> Setting<'a> {
 
     /// A mesh with so many vertices, and how far it is from the surface, if that is asked for. Where what comes out is no mesh,
     /// or folded, it is made again with more of the surface there.
-    fn meshed(&self, count: usize, scale: f64) -> Result<(Meshed, Option<SurfaceFidelity>)> {
+    pub(super) fn meshed(&self, count: usize, scale: f64) -> Result<(Meshed, Option<SurfaceFidelity>)> {
         let mut reseed = Reseed::default();
         let mut notes = Vec::new();
         let (mut pass, mut checked) = loop {
@@ -301,8 +211,8 @@ impl<'a> Setting<'a> {
             polish_on_surface(&mut pass.dual, function, norm, patience, self.progress)
         })?;
         let (better, mesh) = (self.checked(pass)?, &checked.mesh);
-        let stray = |mesh: &Mesh| (self.input.surface.area() - area(mesh)).abs();
-        let is_as_near = stray(&better.mesh) <= NEARLY * stray(mesh) + ROUNDING * self.input.surface.area();
+        let stray = |mesh: &Mesh| (self.input.area() - area(mesh)).abs();
+        let is_as_near = stray(&better.mesh) <= NEARLY * stray(mesh) + ROUNDING * self.input.area();
         // Polishing takes the surface to be smooth between vertices.
         let error = |mesh: &Mesh| Ok(interpolation_error_on(mesh, self.input, function, polishing_norm(norm))?.norm);
         let why = if !better.faulty.is_empty() {
@@ -353,8 +263,8 @@ impl<'a> Setting<'a> {
         self.progress.begin("fitting", 1)?;
         let options = FitOptions { stiffness: self.options.stiffness, ..FitOptions::default() };
         let input = self.input;
-        let fine = input.implicit.as_ref().map(|_| self.fine_surface(mesh.points.len())).transpose()?;
-        let fitted = fit(&mesh, fine.as_ref().unwrap_or(&input.surface), &options)?.mesh;
+        let fine = input.equation().map(|_| self.fine_surface(mesh.points.len())).transpose()?;
+        let fitted = fit(&mesh, fine.as_ref().unwrap_or(input), &options)?.mesh;
         let found = quality::validity_on(&fitted, self.meetings);
         if found.valid {
             return Ok((fitted, found));
@@ -363,12 +273,11 @@ impl<'a> Setting<'a> {
         Ok((mesh, validity))
     }
 
-    fn fidelity(&self, mesh: &Mesh) -> Result<Option<SurfaceFidelity>> {
+    pub(super) fn fidelity(&self, mesh: &Mesh) -> Result<Option<SurfaceFidelity>> {
         if self.options.hausd.is_none() && !self.options.fit {
             return Ok(None);
         }
-        let implicit = self.input.implicit.as_ref().map(|f| f as &dyn Implicit);
-        quality::surface_fidelity(mesh, &self.input.surface, implicit).map(Some)
+        quality::surface_fidelity(mesh, self.input).map(Some)
     }
 
     /// The number of vertices, the factor on the metric for which edges then are of unit length, if it is not known, and the metric's complexity.
@@ -380,7 +289,7 @@ impl<'a> Setting<'a> {
         let measuring = self.options.vertices.map_or(most, |count| count.saturating_mul(2).clamp(least, most));
         let area = area_of_surface(self.input, self.metric, measuring)?;
         // Of the surface as it was before it was cut: vertices on its cuts count once.
-        let chi = self.input.seams.whole().euler as f64;
+        let chi = self.input.whole().euler as f64;
         let extra = self.curves.extra();
         let vertices = |factor: f64| 2.0 / 3.0_f64.sqrt() * area * factor + extra * factor.sqrt() + chi;
         let (count, factor) = match (self.options.vertices, known.or(self.options.complexity.map(|all| all / area))) {
@@ -397,7 +306,7 @@ impl<'a> Setting<'a> {
         };
         // Patches with a border have their vertices there.
         let is_closed = |component: &Component| component.borders == 0;
-        let least = 4 * self.input.surface.components().into_iter().filter(is_closed).count();
+        let least = 4 * self.input.components().into_iter().filter(is_closed).count();
         self.demand_memory(count)?;
         let scale = if factor > 0.0 { factor } else { 1.0 };
         Ok(SurfacePlan { count: count.max(least), scale, complexity: area })
@@ -406,16 +315,17 @@ impl<'a> Setting<'a> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::mesh_surface;
     use super::super::{GradedAt, MetricOptions, SurfaceSource, metric_on_surface};
     use super::*;
+    use crate::manifold::surface::metric::Spec;
     use crate::progress::Silent;
-    use crate::surface::metric::Spec;
 
     /// A front on triangles with creases: polishing lowers the error that is measured elsewhere, keeps the
     /// number of vertices and their surface, and never raises its own.
     #[test]
     fn polishing_lowers_the_error_on_surfaces() {
-        let cube = Input::new(crate::surface::Surface::new(&crate::test_cases::cube(9, 0.0)).unwrap(), None);
+        let cube = Manifold::of(&crate::test_cases::cube(9, 0.0)).unwrap();
         for (input, text) in [(cube, "tanh(6*(x + y*z - 0.5))")] {
             let spec = Spec::parse(&format!("hessian:{text}")).unwrap();
             let Spec::Hessian(function) = &spec else { panic!("of a function") };
@@ -451,7 +361,7 @@ mod tests {
         for p in &mut bumpy.points {
             p[2] = 0.02 * (25.0 * p[0]).sin() * (25.0 * p[1]).sin();
         }
-        let input = Input::new(crate::surface::Surface::new(&bumpy).unwrap(), None);
+        let input = Manifold::of(&bumpy).unwrap();
         let spec = Spec::parse("hessian:tanh(10*(x + 0.1*sin(5*y) - 0.5 + z))").unwrap();
         let Spec::Hessian(function) = &spec else { panic!("of a function") };
         let at = GradedAt::of(Some(300), None);
@@ -469,7 +379,7 @@ mod tests {
     /// Away from a front the error asks for no small triangles, and the sphere does.
     #[test]
     fn polishing_does_not_leave_the_surface() {
-        let sphere = Input::shape("sphere:1", Some(0.1)).unwrap();
+        let sphere = Manifold::shape("sphere:1", Some(0.1)).unwrap();
         let spec = Spec::parse("hessian:tanh(8*(x - 0.3 + 0.2*y))").unwrap();
         let Spec::Hessian(function) = &spec else { panic!("of a function") };
         let at = GradedAt::of(Some(500), None);

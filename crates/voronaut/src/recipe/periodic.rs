@@ -1,8 +1,8 @@
 //! The vertices of a mesh that correspond, because two curves of the boundary were sampled as one.
 
-use crate::domain::Pair;
 use crate::error::{Error, Result};
 use crate::geometry::Point;
+use crate::manifold::domain::Pair;
 use crate::mesh::{Mesh, Network, Periodic};
 use crate::sampling::Plan;
 use std::collections::HashMap;

@@ -1,8 +1,9 @@
 //! Protected seeds: the last moves, and what the report says of the net.
 
 use super::dual::compared;
+use super::plane::Job;
 use super::surface_pass::{Checked, Pass, Setting};
-use super::{Job, MeshOptions, Seeding};
+use super::{MeshOptions, Seeding};
 use crate::canvas::{self, Canvas};
 use crate::diagram::{Diagram, RESOLVE_ROUNDS, SurfaceDiagram, resolve};
 use crate::dual::{Dual, Moving, Road};
@@ -10,10 +11,10 @@ use crate::error::{Error, Result};
 use crate::figures;
 use crate::geodesic::Method;
 use crate::geometry::Point;
+use crate::manifold::Place;
 use crate::net::{Ball, Net};
 use crate::optimise::{Ending, Protected, measured, measured_on_surface, protect, protect_on_surface};
 use crate::sampling::Plan;
-use crate::surface::Place;
 
 /// Refuses to look for what there cannot be: equilateral triangles, which are protected best, are by sqrt(3) epsilon.
 ///
@@ -52,7 +53,7 @@ impl Job<'_> {
     /// The nerve of the vertices on a canvas that is refined where it does not tell Voronoi vertices apart, held against the
     /// exact dual. (Where the domain touches itself in points, of the vertices there only one counts.)
     fn raw_nerve(&self, plan: &Plan, dual: &Dual) -> Result<figures::CanvasNerve> {
-        let number = dual.numbering(&plan.domain);
+        let number = plan.numbering(dual);
         let mut seeds: Vec<(u32, Point)> =
             dual.topology().vertices().map(|v| (number[v.index()], dual.position(v))).collect();
         seeds.sort_by_key(|seed| seed.0);
@@ -60,7 +61,7 @@ impl Job<'_> {
         let seeds: Vec<Point> = seeds.into_iter().map(|seed| seed.1).collect();
         let field = dual.field();
         let size = canvas::size_for(seeds.len(), self.options.canvas_size);
-        let resolved = resolve(Canvas::intrinsic(&plan.domain, field, size)?, field, &seeds, RESOLVE_ROUNDS)?;
+        let resolved = resolve(Canvas::intrinsic(plan.domain.planar(), field, size)?, field, &seeds, RESOLVE_ROUNDS)?;
         let diagram = Diagram::new(&resolved.canvas, field, &seeds)?;
         let nerve = super::dual(&diagram, field, Road::Both, self.progress).raw_nerve;
         let canvas_vertices = resolved.canvas.vertex_count();
@@ -80,7 +81,7 @@ impl Job<'_> {
             None if self.options.net => self.watch.time("net", || measured(dual)),
             None => return (None, None),
         };
-        let number = dual.numbering(&plan.domain);
+        let number = plan.numbering(dual);
         (Some(numbered(net, |v| number[v as usize])), account)
     }
 }

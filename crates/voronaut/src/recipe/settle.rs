@@ -1,8 +1,9 @@
 //! Steps of the main job in the plane: seeding on a canvas, relaxing, and the last pass, which decides on the edges by both roads and
-//! says how sure that is. And the time that steps take.
+//! says how sure that is.
 
+use super::MeshOptions;
 use super::options::{self, Centroid, Seeding};
-use super::{BLOCKED_SHARE, EXCHANGED_SHARE, Job, MeshOptions};
+use super::plane::Job;
 use crate::canvas::{Canvas, CanvasFigures};
 use crate::diagram::{Care, Diagram, Flat, Ground};
 use crate::dual::{Consultation, Disagreement, Dual, Effort, Moving};
@@ -14,7 +15,6 @@ use crate::progress::Progress;
 use crate::sampling::{Plan, demand_memory, refine_farthest};
 use crate::triangulation::VertexId;
 use crate::{canvas, figures};
-use std::cell::RefCell;
 
 /// Flips by the most careful tests, asks the diagram where the road says so, and tells what came of it.
 ///
@@ -44,7 +44,7 @@ pub(super) struct Settled {
 }
 
 fn account(dual: &mut Dual, plan: &Plan, found: Consultation) -> figures::Dual {
-    let number = dual.numbering(&plan.domain);
+    let number = plan.numbering(dual);
     let ends = |edge: [VertexId; 2]| edge.map(|v| number[v.index()]);
     let disagreement = |d: Disagreement| figures::Disagreement {
         edge: ends(d.edge),
@@ -68,6 +68,11 @@ fn account(dual: &mut Dual, plan: &Plan, found: Consultation) -> figures::Dual {
         ..figures::Dual::default()
     }
 }
+
+/// Seeds put at blocked flips, as a share of all: N is kept within one per cent.
+const BLOCKED_SHARE: f64 = 0.005;
+/// Seeds exchanged between two halves of the relaxation, as a share of all.
+const EXCHANGED_SHARE: f64 = 0.06;
 
 /// Triangles that are mended in the end, as a share of all.
 const MENDED_SHARE: f64 = 0.002;
@@ -201,7 +206,8 @@ impl Job<'_> {
         let size = canvas::size_for(seeds, self.options.canvas_size);
         demand_memory(seeds as f64, size as f64, self.options.memory_limit)?;
         self.progress.begin("canvas", 1)?;
-        let canvas = self.watch.time("canvas", || Canvas::new(self.options.canvas, &plan.domain, self.field, size))?;
+        let canvas =
+            self.watch.time("canvas", || Canvas::new(self.options.canvas, plan.domain.planar(), self.field, size))?;
         self.canvas = Some(canvas.figures());
         Ok(Some(canvas))
     }
@@ -216,36 +222,5 @@ impl Job<'_> {
         refine_farthest(dual, &mut diagram, self.fill(count), self.progress)?;
         self.diagram = Some(figures::Diagram::of(&diagram));
         Ok(())
-    }
-}
-
-/// Stages in the order in which they first began, with the seconds spent in each by the clock of who watches.
-pub(super) struct Stopwatch<'a> {
-    pub(super) progress: &'a dyn Progress,
-    seconds: RefCell<Vec<(&'static str, f64)>>,
-}
-
-impl<'a> Stopwatch<'a> {
-    /// Nothing has begun.
-    pub(super) fn new(progress: &'a dyn Progress) -> Self {
-        Self { progress, seconds: RefCell::default() }
-    }
-
-    /// Does the work, whose time the stage takes.
-    pub(super) fn time<T>(&self, stage: &'static str, work: impl FnOnce() -> T) -> T {
-        let start = self.progress.seconds();
-        let result = work();
-        let took = self.progress.seconds() - start;
-        let mut seconds = self.seconds.borrow_mut();
-        match seconds.iter_mut().find(|(name, _)| *name == stage) {
-            Some((_, seconds)) => *seconds += took,
-            None => seconds.push((stage, took)),
-        }
-        result
-    }
-
-    /// All stages so far.
-    pub(super) fn seconds(&self) -> Vec<(&'static str, f64)> {
-        self.seconds.borrow().clone()
     }
 }

@@ -6,10 +6,10 @@ use super::options::{Centroid, Seeding};
 use super::surface_pass::{Parts, Reseed, Setting, Started};
 use crate::dual::{Moving, SurfaceDual};
 use crate::error::Result;
+use crate::manifold::Place;
 use crate::optimise::{Cells, Patience};
 use crate::progress::Within;
 use crate::sampling::{Adapted, FeatureSeeds, Halving, Holding, Wanted, adapted, contracted, halved};
-use crate::surface::Place;
 use crate::triangulation::VertexId;
 
 /// The coarsest mesh has at least so many vertices. With 400 meshes of 2,000 took 0.98 of the time at the median of five surfaces.
@@ -49,7 +49,7 @@ impl<'a> Setting<'a> {
     /// of the surface's own triangles. Of a surface with more vertices than are wanted these are made first: to get rid of the others takes longest.
     pub(super) fn started_from_coarser(&self, count: usize, scale: f64, reseed: &mut Reseed) -> Result<Started> {
         let is_plain = self.options.seeding == Seeding::Sizing && self.options.centroid == Centroid::Tangent;
-        let is_large = self.input.surface.positions().len() > count;
+        let is_large = self.input.positions().len() > count;
         let mut direct = None;
         if is_large || !is_plain {
             direct = Some(self.started_from_surface(count, scale, reseed)?);

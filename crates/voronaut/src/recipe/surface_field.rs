@@ -6,15 +6,16 @@ use crate::canvas::{Draped, even_on_surface};
 use crate::error::Result;
 use crate::geometry::{Point3, Tensor3};
 use crate::lists::Rows;
+use crate::manifold::surface::metric::{
+    CovariantHessian, CurvatureFigures, Sampled, Spec, SurfaceMetric, TangentPlanes, area_of_surface, field,
+    field_of_values, recovered_on, within,
+};
+use crate::manifold::surface::{FeatureOptions, Nearest, closest_weights};
+use crate::manifold::{Manifold, Place};
 use crate::mesh::{Mesh, Solution, SolutionValues, coincident};
 use crate::metric::nodal::Vertices;
 use crate::metric::{Bounds, swept};
 use crate::parallel::prelude::*;
-use crate::surface::metric::{
-    CovariantHessian, CurvatureFigures, Sampled, Spec, SurfaceMetric, TangentPlanes, area_of_surface, field,
-    field_of_values, recovered_on, within,
-};
-use crate::surface::{FeatureOptions, Input, Nearest, Place, Surface, closest_weights};
 use crate::triangulation::{FaceId, VertexId};
 use std::collections::BTreeMap;
 
@@ -44,7 +45,7 @@ type Sample<'a> = dyn FnOnce(&[Point3]) -> Result<SolutionValues> + 'a;
 /// smoothing asks for too many sweeps; the gradation is no factor.
 pub fn metric_on_surface(
     source: SurfaceSource,
-    input: &Input,
+    input: &Manifold,
     options: &MetricOptions,
     at: GradedAt,
 ) -> Result<Box<dyn SurfaceMetric>> {
@@ -71,7 +72,7 @@ pub fn metric_on_surface(
 /// The field, and the multiple in which limits on sizes are meant: one, but for second derivatives, whose units are the function's.
 pub(super) fn named(
     source: SurfaceSource,
-    input: &Input,
+    input: &Manifold,
     options: &MetricOptions,
     at: GradedAt,
 ) -> Result<(Box<dyn SurfaceMetric>, f64)> {
@@ -84,34 +85,34 @@ pub(super) fn named(
         SurfaceSource::Named(spec) => plain(field(spec, input, Bounds::default())?),
         SurfaceSource::Values(solution) => plain(Box::new(field_of_values(solution, input)?)),
         SurfaceSource::Samples(sample) => {
-            let sampled = values(sample(input.surface.positions())?);
-            plain(Box::new(Sampled::from_solution(&input.surface, &sampled)?))
+            let sampled = values(sample(input.positions())?);
+            plain(Box::new(Sampled::from_solution(input.surface(), &sampled)?))
         }
         SurfaceSource::Implied => {
             let vertices = TangentPlanes::to_join(input);
-            plain(Box::new(Sampled::new(&input.surface, &vertices.extended(&vertices.implied()?))?))
+            plain(Box::new(Sampled::new(input.surface(), &vertices.extended(&vertices.implied()?))?))
         }
         SurfaceSource::Function(given) => within_surface(Box::new(recovered(given, input, options)?), input, at),
         SurfaceSource::Solution(mesh, given) => {
-            let own = Input::new(Surface::new(mesh)?, None).cut(&FeatureOptions::default())?;
+            let own = Manifold::of(mesh)?.cut(&FeatureOptions::default())?;
             match given {
                 SolutionValues::Scalar(given) => {
-                    let field = Elsewhere::new(recovered(given, &own, options)?, own);
+                    let field = Elsewhere { field: recovered(given, &own, options)?, there: own };
                     within_surface(Box::new(field), input, at)
                 }
-                _ => plain(Box::new(Elsewhere::new(field_of_values(&values(given.clone()), &own)?, own))),
+                _ => plain(Box::new(Elsewhere { field: field_of_values(&values(given.clone()), &own)?, there: own })),
             }
         }
     }
 }
 
 /// The metric of second derivatives recovered from values at the vertices that a surface had before it was cut.
-fn recovered(given: &[f64], input: &Input, options: &MetricOptions) -> Result<Sampled> {
+fn recovered(given: &[f64], input: &Manifold, options: &MetricOptions) -> Result<Sampled> {
     recovered_on(input, &spread_values(given, input)?, options.norm)
 }
 
 /// Values at the vertices that a surface had before it was cut, at those that it has now.
-pub(super) fn spread_values(given: &[f64], input: &Input) -> Result<Vec<f64>> {
+pub(super) fn spread_values(given: &[f64], input: &Manifold) -> Result<Vec<f64>> {
     let spread = input.spread(&Solution { dimension: 3, values: SolutionValues::Scalar(given.to_vec()) })?;
     let SolutionValues::Scalar(spread) = spread.values else { unreachable!("of the type that was given") };
     Ok(spread)
@@ -120,20 +121,12 @@ pub(super) fn spread_values(given: &[f64], input: &Input) -> Result<Vec<f64>> {
 /// A field on another triangulation of the surface, at the closest place there that faces the same way.
 struct Elsewhere {
     field: Sampled,
-    surface: Surface,
-    nearest: Nearest,
-}
-
-impl Elsewhere {
-    fn new(field: Sampled, input: Input) -> Self {
-        let nearest = Nearest::new(&input.surface);
-        Self { field, surface: input.surface, nearest }
-    }
+    there: Manifold,
 }
 
 impl SurfaceMetric for Elsewhere {
     fn at(&self, place: &Place) -> Tensor3 {
-        match self.nearest.closest_facing(&self.surface, place.position, place.normal) {
+        match self.there.closest_facing(place.position, place.normal) {
             Some(there) => self.field.at(&there),
             None => Tensor3::IDENTITY * f64::NAN,
         }
@@ -142,18 +135,22 @@ impl SurfaceMetric for Elsewhere {
 
 /// The field with sizes of at most [`LONGEST`] of the surface's extent, in the multiple in which edges have length one; and that
 /// multiple.
-fn within_surface(field: Box<dyn SurfaceMetric>, input: &Input, at: GradedAt) -> Result<(Box<dyn SurfaceMetric>, f64)> {
+fn within_surface(
+    field: Box<dyn SurfaceMetric>,
+    input: &Manifold,
+    at: GradedAt,
+) -> Result<(Box<dyn SurfaceMetric>, f64)> {
     let scale = match at {
         GradedAt::Scale(scale) => scale,
         GradedAt::Complexity(target) => target / area_of_surface(input, field.as_ref(), FEWEST)?,
     };
-    let extent = input.surface.bounds().extent();
+    let extent = input.bounds().extent();
     let h_max = Some(LONGEST * extent.x.max(extent.y).max(extent.z) * scale.sqrt());
     Ok((within(field, Bounds { h_max, ..Bounds::default() })?, scale))
 }
 
 /// How many vertices the triangles have on which a metric is graded.
-fn count_for(field: &dyn SurfaceMetric, input: &Input, at: GradedAt) -> Result<usize> {
+fn count_for(field: &dyn SurfaceMetric, input: &Manifold, at: GradedAt) -> Result<usize> {
     let complexity = match at {
         GradedAt::Complexity(target) => target,
         GradedAt::Scale(scale) => scale * area_of_surface(input, field, FEWEST)?,
@@ -161,7 +158,7 @@ fn count_for(field: &dyn SurfaceMetric, input: &Input, at: GradedAt) -> Result<u
     Ok(background_vertices(complexity, FEWEST))
 }
 
-fn smoothed(field: &dyn SurfaceMetric, input: &Input, vertices: usize, sweeps: u32) -> Result<OnBackground> {
+fn smoothed(field: &dyn SurfaceMetric, input: &Manifold, vertices: usize, sweeps: u32) -> Result<OnBackground> {
     let background = Background::new(input, field, vertices)?;
     let logs = background.tensors(field).par_iter().map(|tensor| tensor.log()).collect();
     Ok(OnBackground::new(&background.draped, swept(&background.vertices.around(), logs, sweeps)?, field))
@@ -175,7 +172,7 @@ struct Background<'s> {
 
 impl<'s> Background<'s> {
     /// Even in a metric, with so many vertices, and all that the surface has.
-    fn new(input: &'s Input, metric: &'s dyn SurfaceMetric, vertices: usize) -> Result<Self> {
+    fn new(input: &'s Manifold, metric: &'s dyn SurfaceMetric, vertices: usize) -> Result<Self> {
         let draped = even_on_surface(input, metric, vertices)?;
         let t = draped.topology();
         let slots = t.vertex_slots() as u32;
@@ -226,7 +223,7 @@ impl OnBackground {
         let t = draped.topology();
         let (faces, corners): (Vec<FaceId>, Vec<[u32; 3]>) = t.faces().map(|f| (f, t.corners(f).map(|v| v.0))).unzip();
         let positions: Vec<Point3> = (0..logs.len() as u32).map(|v| draped.position(VertexId(v))).collect();
-        let homes = draped.input().surface.topology().face_slots();
+        let homes = draped.input().topology().face_slots();
         let mut pairs: Vec<(u32, u32)> = faces.iter().zip(0..).map(|(&f, i)| (draped.home(f).0, i)).collect();
         pairs.sort_unstable();
         let at_home = Rows::new(homes, pairs.into_iter());
@@ -267,8 +264,8 @@ impl SurfaceMetric for OnBackground {
 mod tests {
     use super::*;
     use crate::geometry::{TangentPlane, Tensor};
+    use crate::manifold::surface::metric::grade;
     use crate::metric::Norm;
-    use crate::surface::metric::grade;
     use crate::test_cases::cube;
 
     fn spec(text: &str) -> Spec {
@@ -279,18 +276,18 @@ mod tests {
         TangentPlane::new(place.normal).restrict(field.at(place))
     }
 
-    fn places(input: &Input) -> impl Iterator<Item = Place> {
-        input.surface.topology().faces().map(|f| input.surface.place(f, [0.2, 0.3, 0.5]))
+    fn places(input: &Manifold) -> impl Iterator<Item = Place> {
+        input.topology().faces().map(|f| input.place(f, [0.2, 0.3, 0.5]))
     }
 
     /// The sides of a cube, each by itself.
-    fn sides(n: u32) -> Input {
-        Input::new(Surface::new(&cube(n, 0.0)).unwrap(), None)
+    fn sides(n: u32) -> Manifold {
+        Manifold::of(&cube(n, 0.0)).unwrap()
     }
 
     #[test]
     fn uniform_metrics_stay() {
-        for input in [sides(3), Input::shape("torus:2,0.7", Some(0.5)).unwrap()] {
+        for input in [sides(3), Manifold::shape("torus:2,0.7", Some(0.5)).unwrap()] {
             for options in [
                 MetricOptions { gradation: Some(1.2), ..MetricOptions::default() },
                 MetricOptions { smooth_metric: 7, ..MetricOptions::default() },
@@ -311,14 +308,14 @@ mod tests {
     fn sizes_are_graded_as_sizes() {
         let input = sides(6);
         let mut sizes: Vec<f64> =
-            input.surface.positions().iter().map(|p| if p.x + p.y < 0.1 && p.z > 0.4 { 0.01 } else { 2.0 }).collect();
+            input.positions().iter().map(|p| if p.x + p.y < 0.1 && p.z > 0.4 { 0.01 } else { 2.0 }).collect();
         let values = Solution { dimension: 3, values: SolutionValues::Scalar(sizes.clone()) };
         let options = MetricOptions { gradation: Some(1.4), ..MetricOptions::default() };
         let field = metric_on_surface(SurfaceSource::Values(&values), &input, &options, GradedAt::Scale(1.0)).unwrap();
-        grade(&input.surface, &mut sizes, 1.4).unwrap();
+        grade(input.surface(), &mut sizes, 1.4).unwrap();
         let mut changed = 0;
-        for v in input.surface.topology().vertices() {
-            let place = input.surface.place_of(v).unwrap();
+        for v in input.topology().vertices() {
+            let place = input.place_of(v).unwrap();
             let found = tangential(field.as_ref(), &place);
             let size = sizes[v.index()];
             changed += usize::from(size > 0.011 && size < 1.9);
@@ -332,7 +329,7 @@ mod tests {
 
     #[test]
     fn graded_metrics_are_finer_and_in_the_units_given() {
-        let input = Input::shape("sphere:1", Some(0.3)).unwrap();
+        let input = Manifold::shape("sphere:1", Some(0.3)).unwrap();
         let jump = spec("formula:if(x<0,400,1); 0; if(x<0,4,1); 0; 0; 4");
         let plain = MetricOptions::default();
         let graded = MetricOptions { gradation: Some(1.3), ..plain.clone() };
@@ -341,8 +338,8 @@ mod tests {
         let (before, after) = (of(&plain), of(&graded));
         let mut finer = 0;
         // The vertices of the surface are those of any background, and nothing is between them there.
-        for v in input.surface.topology().vertices() {
-            let place = input.surface.place_of(v).unwrap();
+        for v in input.topology().vertices() {
+            let place = input.place_of(v).unwrap();
             let place = input.lift(&place, place.position).unwrap();
             let [m, n] = [&before, &after].map(|field| tangential(field.as_ref(), &place));
             assert!(n.determinant() > (1.0 - 1e-9) * m.determinant(), "{} {m:?} {n:?}", place.position);
@@ -354,8 +351,8 @@ mod tests {
     /// What a solver finds on a mesh of the surface makes the metric that its formula has.
     #[test]
     fn solutions_on_other_meshes_make_metrics() {
-        let input = Input::shape("sphere:1", Some(0.3)).unwrap();
-        let mesh = crate::surface::sphere(1.0, 0.08).unwrap().to_mesh();
+        let input = Manifold::shape("sphere:1", Some(0.3)).unwrap();
+        let mesh = crate::manifold::surface::sphere(1.0, 0.08).unwrap().to_mesh();
         let values = mesh.points.iter().map(|p| (2.0 * p[0]).sin()).collect();
         let options = MetricOptions { norm: Norm::new(f64::INFINITY).unwrap(), ..MetricOptions::default() };
         let at = GradedAt::Scale(1.0);

@@ -2,7 +2,8 @@
 
 use super::dual::account;
 use super::patches::Patched;
-use super::settle::{Settled, Stopwatch, cells};
+use super::settle::{Settled, cells};
+use super::stopwatch::Stopwatch;
 use super::{Centroid, Effort, MeshOptions, Seeding};
 use crate::canvas::{Canvas, CanvasFigures, Draped};
 use crate::diagram::SurfaceDiagram;
@@ -11,6 +12,8 @@ use crate::error::{Error, Result};
 use crate::figures;
 use crate::geometry::Point3;
 use crate::lists::{distinct, in_order};
+use crate::manifold::surface::metric::SurfaceMetric;
+use crate::manifold::{Manifold, Place};
 use crate::mesh::Mesh;
 use crate::metric::{Expression, Norm};
 use crate::optimise::{Cells, Mending, Patience, Relaxed, relax};
@@ -21,8 +24,6 @@ use crate::sampling::{
     ALL_VERTICES, Adapted, FeatureSeeds, Held, Holding, MeasuredCurves, Wanted, adapted, contracted, exchanged,
     fill_farthest,
 };
-use crate::surface::metric::SurfaceMetric;
-use crate::surface::{Input, Place, Surface, Whole};
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
 use std::collections::BTreeSet;
 
@@ -69,7 +70,7 @@ impl Parts {
 
 /// What passes are made with.
 pub(super) struct Setting<'a> {
-    pub(super) input: &'a Input,
+    pub(super) input: &'a Manifold,
     pub(super) metric: &'a dyn SurfaceMetric,
     /// The function that the mesh is for, if it is for one, and the norm.
     pub(super) aim: Option<(&'a Expression, Norm)>,
@@ -83,7 +84,7 @@ pub(super) struct Setting<'a> {
 
 /// What a pass has come to.
 pub(super) struct Pass<'a> {
-    input: &'a Input,
+    input: &'a Manifold,
     pub(super) dual: SurfaceDual<'a>,
     features: FeatureSeeds,
     owners: Vec<u32>,
@@ -244,7 +245,7 @@ impl<'a> Setting<'a> {
         let (canvas, at) = self.canvas(total, &given)?;
         let mut diagram = SurfaceDiagram::on_surface(&canvas, &at, self.options.geodesic)?;
         let draped = canvas.draped();
-        let required = self.input.surface.required_triangles();
+        let required = self.input.required_triangles();
         let may_hold = |v: VertexId| {
             !draped.topology().is_border_vertex(v) && required.binary_search(&draped.place(v).face).is_err()
         };
@@ -276,7 +277,7 @@ impl<'a> Setting<'a> {
 
     /// The surface's own triangles, adapted. Where vertices of a curve cannot be contracted without folds, all of them become seeds.
     pub(super) fn started_from_surface(&self, count: usize, scale: f64, reseed: &mut Reseed) -> Result<Started> {
-        let curves = &self.input.seams.features.curves;
+        let curves = &self.input.features().curves;
         reseed.density.resize(curves.len(), 1);
         if reseed.is_last {
             reseed.density.fill(ALL_VERTICES);
@@ -289,7 +290,7 @@ impl<'a> Setting<'a> {
             if adapted.stuck.is_empty() {
                 return Ok(Started { features, owners, adapted, is_even: false, canvas: None });
             }
-            let stuck: BTreeSet<VertexId> = adapted.stuck.iter().map(|&v| self.input.seams.original(v)).collect();
+            let stuck: BTreeSet<VertexId> = adapted.stuck.iter().map(|&v| self.input.seams().original(v)).collect();
             for (curve, density) in curves.iter().zip(&mut reseed.density) {
                 let is_stuck = curve.edges.iter().any(|edge| stuck.contains(&edge.from) || stuck.contains(&edge.to));
                 *density = if is_stuck { ALL_VERTICES } else { *density };
@@ -356,8 +357,8 @@ impl<'a> Setting<'a> {
     }
 
     /// A canvas of so many seeds as a surface: finer than what an equation was first meshed to.
-    pub(super) fn fine_surface(&self, count: usize) -> Result<Surface> {
-        self.canvas(count, &[])?.0.draped().to_surface()
+    pub(super) fn fine_surface(&self, count: usize) -> Result<Manifold> {
+        self.canvas(count, &[])?.0.draped().to_manifold()
     }
 }
 
@@ -409,7 +410,7 @@ impl Pass<'_> {
     /// What to do differently: more of the surface kept around faulty triangles, more seeds on the curves that one touches.
     pub(super) fn reseed(&self, faulty: &[u32], before: Reseed) -> Reseed {
         let mut density = before.density;
-        density.resize(self.input.seams.features.curves.len(), 1);
+        density.resize(self.input.features().curves.len(), 1);
         let triangles = self.dual.triangles();
         let mut curves: BTreeSet<usize> = BTreeSet::new();
         for corners in faulty.iter().map(|&t| triangles[t as usize]) {
@@ -457,21 +458,21 @@ impl Pass<'_> {
 ///
 /// # Errors
 /// [`Error::Mesh`] with the first fault.
-pub(super) fn demand(input: &Input, mesh: &Mesh, found: &Validity) -> Result<()> {
+pub(super) fn demand(input: &Manifold, mesh: &Mesh, found: &Validity) -> Result<()> {
     let help = "ask for more vertices (`vertices`); please report this with the input";
     let fault = |what: &str, place: String| Err(Error::mesh(what, place, help));
     if let Some(found) = &found.first_fault {
         return fault(&found.what, found.place.clone());
     }
-    let Whole { euler, borders } = input.seams.whole();
-    if (found.euler, found.boundary_loops) != (euler, borders) {
+    let whole = input.whole();
+    if (found.euler, found.boundary_loops) != (whole.euler, whole.borders) {
         let what = format!(
-            "the mesh has another topology than the surface: Euler number {} and {} borders instead of {euler} and {borders}",
-            found.euler, found.boundary_loops
+            "the mesh has another topology than the surface: Euler number {} and {} borders instead of {} and {}",
+            found.euler, found.boundary_loops, whole.euler, whole.borders
         );
         return fault(&what, "the mesh".into());
     }
-    if mesh.required_triangles.len() < input.surface.required_triangles().len() {
+    if mesh.required_triangles.len() < input.required_triangles().len() {
         return fault("a required triangle is not in the mesh", "the mesh".into());
     }
     Ok(())

@@ -1,33 +1,39 @@
 //! Curves of a domain simplified within a distance, which tells what of the input's vertices the mesh keeps; and sizes for which
 //! chords stay as close to them.
 
-use crate::domain::{Chain, Domain, Pair, Pslg, curves_in_step};
 use crate::elementary::Elementary;
+use crate::error::Result;
 use crate::geodesic::chord_by;
 use crate::geometry::{Aabb, BoxTree, Orientation, Point, Tensor, Vector, kept_within, orientation, widened};
 use crate::lists::distinct;
+use crate::manifold::domain::{Chain, Pair, Pslg, curves_in_step};
 use crate::metric::{MetricField, nearby};
 use crate::parallel::prelude::*;
 use std::collections::HashSet;
 
-/// The domain with fewer vertices along its curves: about one per unit of metric length, more where an edge would
+/// A domain of a graph with fewer vertices along its curves: about one per unit of metric length, more where an edge would
 /// stray farther than `tolerance` (Euclidean) from the vertices that it skips. Ends of curves stay, loops keep at
 /// least three vertices, and where simplified curves would meet, they are kept finer, if need be as they were. Curves of periodic pairs
 /// keep the same vertices.
-pub(crate) fn simplify(domain: &Domain, pairs: &[Pair], field: &dyn MetricField, tolerance: f64) -> Domain {
-    let pslg = domain.pslg();
+pub(crate) fn simplify<D>(
+    pslg: &Pslg,
+    pairs: &[Pair],
+    field: &dyn MetricField,
+    tolerance: f64,
+    domain: impl Fn(&Pslg) -> Result<D>,
+) -> Option<D> {
     let curves = curves_in_step(pslg, pairs);
     let neighbours = Neighbours::new(pslg);
     let mut allowed = tolerance;
     for _ in 0..6 {
         let of_one = |curve: &Vec<Chain>| thin(pslg, curve, field, allowed, &neighbours);
         let thinned: Vec<Chain> = curves.par_iter().flat_map_iter(of_one).collect();
-        if let Ok(simplified) = Domain::new(&pslg.with_chains(&thinned)) {
-            return simplified;
+        if let Ok(simplified) = domain(&pslg.with_chains(&thinned)) {
+            return Some(simplified);
         }
         allowed *= 0.25;
     }
-    domain.clone()
+    None
 }
 
 /// A curve, or two in step, with fewer vertices.
@@ -193,11 +199,11 @@ struct SizedSegment {
 
 impl CurveSizes {
     /// Measures the curves.
-    pub(crate) fn new(domain: &Domain, hausd: f64, ar: f64) -> Self {
-        let extent = domain.bounds().extent();
+    pub(crate) fn new(pslg: &Pslg, hausd: f64, ar: f64) -> Self {
+        let extent = Aabb::of(pslg.points.iter().copied()).map_or(Vector::default(), |bounds| bounds.extent());
         let long = extent.x.max(extent.y);
-        let coarse = simplify(domain, &[], &move |_: Point| Tensor::isotropic(long), hausd);
-        let pslg = coarse.pslg();
+        let coarse = simplify(pslg, &[], &move |_: Point| Tensor::isotropic(long), hausd, Pslg::validated);
+        let pslg = coarse.as_ref().map_or(pslg, |coarse| coarse.pslg());
         let required: HashSet<u32> = pslg.required_points.iter().copied().collect();
         let chains = pslg.chains();
         let free = chains.iter().filter(|chain| !chain.kind.required);
@@ -258,13 +264,18 @@ fn curvature([a, b, c]: [Point; 3], ar: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::geometry::Tensor;
+    use crate::manifold::domain::Domain;
     use crate::test_cases::plate;
+
+    fn simplified(domain: &Domain, field: &dyn MetricField, tolerance: f64) -> Domain {
+        simplify(domain.pslg(), &[], field, tolerance, Pslg::validated).unwrap_or_else(|| domain.clone())
+    }
 
     #[test]
     fn a_circle_is_cut_at_unit_length_or_finer_where_the_tolerance_asks() {
         let domain = Domain::shape("disk:0,0,1").unwrap();
         let size = |h: f64| move |_: Point| Tensor::isotropic(h);
-        let sides = |h: f64, tolerance: f64| simplify(&domain, &[], &size(h), tolerance).boundary().len();
+        let sides = |h: f64, tolerance: f64| simplified(&domain, &size(h), tolerance).boundary().len();
         // To within the eighth of an edge by which vertices are looked at.
         assert!((62..=64).contains(&sides(0.1, 1.0)), "{}", sides(0.1, 1.0));
         assert!(sides(10.0, 1e-2) >= 22 && sides(10.0, 1e-2) < 60, "{}", sides(10.0, 1e-2));
@@ -276,7 +287,7 @@ mod tests {
         let domain = Domain::shape("disk:0,0,1").unwrap();
         for hausd in [1e-3, 2e-3, 5e-3] {
             let unit = (SAGITTA * hausd).sqrt();
-            let sides = simplify(&domain, &[], &|_: Point| Tensor::isotropic(unit), hausd).boundary();
+            let sides = simplified(&domain, &|_: Point| Tensor::isotropic(unit), hausd).boundary();
             let lengths: Vec<f64> = sides.iter().map(|(a, b)| a.distance(*b) / unit).collect();
             assert!(lengths.iter().all(|length| (0.7..1.1).contains(length)), "{hausd}: {lengths:?}");
         }
@@ -288,7 +299,7 @@ mod tests {
         let circle = (0..200).map(|i| (f64::from(i) * std::f64::consts::TAU / 200.0).sin_cos());
         let ring: Vec<[f64; 2]> = circle.map(|(sin, cos)| [cos, sin]).collect();
         let unit = 6.37 * std::f64::consts::TAU / 200.0;
-        let sides = simplify(&plate(&[&ring]), &[], &|_: Point| Tensor::isotropic(unit), 5e-3).boundary();
+        let sides = simplified(&plate(&[&ring]), &|_: Point| Tensor::isotropic(unit), 5e-3).boundary();
         let lengths: Vec<f64> = sides.iter().map(|(a, b)| a.distance(*b) / unit).collect();
         assert!(lengths.iter().all(|length| (0.75..1.2).contains(length)), "{lengths:?}");
     }
@@ -296,13 +307,13 @@ mod tests {
     #[test]
     fn corners_of_a_square_stay_within_a_small_tolerance() {
         let square = Domain::shape("rect:0,0,1,1").unwrap();
-        assert_eq!(simplify(&square, &[], &|_: Point| Tensor::isotropic(100.0), 0.01).boundary().len(), 4);
+        assert_eq!(simplified(&square, &|_: Point| Tensor::isotropic(100.0), 0.01).boundary().len(), 4);
     }
 
     /// A disc, and a size that is asked for nowhere.
     fn asked(spec: &str, hausd: f64, p: Point) -> Option<f64> {
         let domain = Domain::shape(spec).unwrap();
-        CurveSizes::new(&domain, hausd, 45.0).at(p).map(|(h, _)| h)
+        CurveSizes::new(domain.pslg(), hausd, 45.0).at(p).map(|(h, _)| h)
     }
 
     #[test]
@@ -320,7 +331,7 @@ mod tests {
     #[test]
     fn directions_are_those_of_the_curve() {
         let domain = Domain::shape("disk:0,0,1").unwrap();
-        let sizes = CurveSizes::new(&domain, 1e-4, 45.0);
+        let sizes = CurveSizes::new(domain.pslg(), 1e-4, 45.0);
         for (_, (a, b)) in (0..40).zip(domain.boundary()) {
             let (_, along) = sizes.at(a).unwrap();
             assert!(along.turn(b - a).min(along.turn(a - b)).to_degrees() < 2.0, "{a}");

@@ -2,12 +2,13 @@
 //! sampled at unit metric length.
 
 use crate::canvas;
-use crate::domain::{Domain, Pair};
 use crate::dual::{Dual, Moving};
 use crate::error::{Error, Result};
 use crate::geodesic::chord_by;
 use crate::geometry::{Motion, Point};
 use crate::lists::{distinct, in_order};
+use crate::manifold::domain::{Domain, Pair};
+use crate::mesh::Mesh;
 use crate::metric::{MetricField, complexity, nearby, rough_complexity};
 use crate::parallel::prelude::*;
 use crate::triangulation::VertexId;
@@ -79,7 +80,7 @@ impl Plan {
     pub(crate) fn new(domain: Domain, pairs: Vec<Pair>, field: &dyn MetricField, target: Target) -> Result<Self> {
         // Elsewhere the integral is only where the search for scale or count starts.
         let integral = if matches!(target, Target::Complexity(_)) { complexity } else { rough_complexity };
-        let complexity = integral(field, &domain.triangles())?;
+        let complexity = integral(field, &domain.planar().triangles())?;
         Ok(Self::with(domain, pairs, field, complexity))
     }
 
@@ -106,6 +107,16 @@ impl Plan {
         let arcs = edges.par_iter().map(|edge| edge.measured(&domain, field)).collect();
         let (corners, copies) = (domain.planar().topology.vertex_count(), copies(&domain));
         Self { domain, complexity, edges, arcs, pairs, corners, copies }
+    }
+
+    /// The mesh of the domain that a dual is.
+    pub(crate) fn mesh(&self, dual: &Dual) -> Mesh {
+        self.domain.mesh_of(dual.planar(), |v| dual.corner(v))
+    }
+
+    /// The number there of each of its vertices by id; `u32::MAX` of those that are none.
+    pub(crate) fn numbering(&self, dual: &Dual) -> Vec<u32> {
+        self.domain.numbering(dual.planar(), |v| dual.corner(v))
     }
 
     /// Vertices of the domain itself, with copies: no mesh has fewer.
@@ -366,8 +377,8 @@ fn cut(dual: &mut Dual, [from, to]: [VertexId; 2], points: &[Point]) -> Vec<Vert
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::domain::Domain;
     use crate::geometry::{Tensor, Vector};
+    use crate::manifold::domain::Domain;
     use crate::metric::Scaled;
     use crate::sampling::Plan;
 
@@ -383,7 +394,7 @@ mod tests {
                     + Tensor::new(0.0, 0.0, 4e4 * (-20.0 * p.x).exp())
             };
             let plan = Plan::new(domain.clone(), Vec::new(), &field, crate::sampling::Target::Metric).unwrap();
-            let mut dual = Dual::new(&domain, Scaled { field: &field, factor: 1.0 }).unwrap();
+            let mut dual = Dual::new(domain.corners(), Scaled { field: &field, factor: 1.0 }).unwrap();
             sample_segments(&mut dual, &plan.edges, &plan.arcs, 1.0, 0);
             let edges = dual.topology().edges().filter(|&h| dual.topology().constraint(h).is_some());
             let lengths: Vec<f64> = edges.map(|h| dual.edge_length(h)).collect();
@@ -396,7 +407,7 @@ mod tests {
         let domain = Domain::shape("rect:0,0,1,1e-6").unwrap();
         let field = |_: Point| Tensor::isotropic(1e-4);
         let plan = Plan::new(domain.clone(), Vec::new(), &field, crate::sampling::Target::Metric).unwrap();
-        let mut dual = Dual::new(&domain, Scaled { field: &field, factor: 1.0 }).unwrap();
+        let mut dual = Dual::new(domain.corners(), Scaled { field: &field, factor: 1.0 }).unwrap();
         assert_eq!(sample_segments(&mut dual, &plan.edges, &plan.arcs, 1.0, 0), 2 * 9_999);
         assert!(dual.counters().flips < 40 * 10_000, "{}", dual.counters().flips);
     }

@@ -3,17 +3,17 @@
 use crate::canvas::{Canvas, Draped, Kind};
 use crate::certificate::{Certificate, Constants, Outcome};
 use crate::diagram::{Diagram, SurfaceDiagram};
-use crate::domain::Domain;
 use crate::dual::Road;
 use crate::geodesic::Method;
 use crate::geometry::{Point, Point3, TangentPlane, Tensor, Vector, Vector3};
+use crate::manifold::domain::Domain;
+use crate::manifold::{Manifold, Place};
 use crate::mesh::Mesh;
 use crate::metric::{MetricField, Uniform};
 use crate::net::{Ball, Net};
 use crate::planar::delaunay;
 use crate::progress::Silent;
 use crate::recipe;
-use crate::surface::{Input, Place, Surface};
 use crate::triangulation::VertexId;
 use std::collections::BTreeSet;
 
@@ -164,7 +164,7 @@ fn what_is_certified_in_a_uniform_metric_is_the_exact_dual() {
         let (jitter, share) = (random.between(0.0, 0.1), random.between(0.5, 1.0));
         let seeds = lattice(map, jitter, &mut random);
         let vertices = (8000.0 * share) as usize;
-        let canvas = Canvas::intrinsic(&square, &Uniform(map.metric()), vertices).unwrap();
+        let canvas = Canvas::intrinsic(square.planar(), &Uniform(map.metric()), vertices).unwrap();
         let found = uniform(map, &seeds, &canvas);
         let is_certified = holds(&found.certificate, "9.1") || holds(&found.certificate, "9.9");
         assert_eq!(holds(&found.certificate, "9.1"), is_certified && round % 4 == 0);
@@ -193,7 +193,7 @@ fn a_protected_net_passes_in_a_turning_metric_and_says_what_it_takes() {
     let (square, field) = (Domain::shape("rect:0,0,1,1").unwrap(), turning(26.0));
     let map = Map([26.0 * 1.5_f64.sqrt(), 0.0, 26.0]);
     let seeds = lattice(map, 0.02, &mut Random(5));
-    let canvas = Canvas::intrinsic(&square, &field, 30_000).unwrap();
+    let canvas = Canvas::intrinsic(square.planar(), &field, 30_000).unwrap();
     let found = varied(&field, &seeds, &canvas);
     let certificate = &found.certificate;
     let wanted = [("9.1", Fails), ("9.9", Fails), ("9.10", Holds), ("9.4", Holds), ("10.20", Holds), ("11.2", Holds)];
@@ -204,7 +204,7 @@ fn a_protected_net_passes_in_a_turning_metric_and_says_what_it_takes() {
 
     // On a coarser canvas the nerve is no longer certified; the size that is asked for is about the same, and fails are reported
     // by their factor.
-    let coarse = varied(&field, &seeds, &Canvas::intrinsic(&square, &field, 6000).unwrap()).certificate;
+    let coarse = varied(&field, &seeds, &Canvas::intrinsic(square.planar(), &field, 6000).unwrap()).certificate;
     let verdict = coarse.verdict("9.10").unwrap();
     assert!(verdict.outcome == Fails && verdict.factor > 1.0 && verdict.factor < 4.0, "{verdict:?}");
     let [fine, rough] = [certificate, &coarse].map(|c| c.verdict("9.10").unwrap().size.unwrap());
@@ -217,7 +217,7 @@ fn random_seeds_are_not_certified_and_their_nerve_on_a_coarse_canvas_is_wrong() 
     let mut random = Random(11);
     let map = Map([40.0, 5.0, 40.0]);
     let seeds: Vec<Point> = (0..1500).map(|_| Point::new(random.next(), random.next())).collect();
-    let canvas = Canvas::intrinsic(&square, &Uniform(map.metric()), 12_000).unwrap();
+    let canvas = Canvas::intrinsic(square.planar(), &Uniform(map.metric()), 12_000).unwrap();
     let found = uniform(map, &seeds, &canvas);
     for theorem in ["9.1", "9.9", "9.10", "9.4"] {
         let verdict = found.certificate.verdict(theorem).unwrap();
@@ -233,7 +233,7 @@ fn without_covered_seeds_nothing_holds() {
     let square = Domain::shape("rect:0,0,1,1").unwrap();
     let map = Map([4.0, 0.0, 4.0]);
     let seeds = lattice(map, 0.0, &mut Random(3));
-    let canvas = Canvas::intrinsic(&square, &Uniform(map.metric()), 2000).unwrap();
+    let canvas = Canvas::intrinsic(square.planar(), &Uniform(map.metric()), 2000).unwrap();
     let certificate = uniform(map, &seeds, &canvas).certificate;
     assert_eq!((certificate.covered, certificate.border_not_covered), (0, seeds.len()));
     let known = certificate.verdicts.iter().find(|verdict| verdict.outcome != Outcome::NotMeasured);
@@ -250,7 +250,7 @@ fn a_curved_metric_has_its_convexity_radius_and_loops_that_are_not_excluded() {
         .map(|p| Point::new(1.8 * p.x - 0.9, 1.8 * p.y - 0.9))
         .filter(|p| p.x.hypot(p.y) < 0.92)
         .collect();
-    let canvas = Canvas::intrinsic(&disk, &sphere, 8000).unwrap();
+    let canvas = Canvas::intrinsic(disk.planar(), &sphere, 8000).unwrap();
     let certificate = varied(&sphere, &seeds, &canvas).certificate;
     let convexity = &certificate.convexity;
     assert!((convexity.curvature - 1.0).abs() < 1e-3, "{convexity:?}");
@@ -266,7 +266,7 @@ fn a_certified_canvas_makes_the_certificate_hold_or_is_refused() {
     let (square, field) = (Domain::shape("rect:0,0,1,1").unwrap(), turning(26.0));
     let seeds = lattice(Map([26.0 * 1.5_f64.sqrt(), 0.0, 26.0]), 0.02, &mut Random(5));
     let with = |seeds: &[Point], limit: u64| {
-        recipe::certified_canvas(Kind::Intrinsic, &square, &field, seeds, Constants::Corrected, limit)
+        recipe::certified_canvas(Kind::Intrinsic, square.planar(), &field, seeds, Constants::Corrected, limit)
     };
     let canvas = with(&seeds, 1 << 30).unwrap();
     assert!(holds(&varied(&field, &seeds, &canvas).certificate, "9.4"));
@@ -279,12 +279,12 @@ fn a_certified_canvas_makes_the_certificate_hold_or_is_refused() {
 }
 
 /// The unit square on a tilted plane in space, and where its points are.
-fn tilted() -> (Input, impl Fn(Point) -> Point3 + Copy) {
+fn tilted() -> (Manifold, impl Fn(Point) -> Point3 + Copy) {
     let plane = TangentPlane::new(Vector3::new(0.48, 0.6, 0.64));
     let lifted = move |p: Point| Point3::new(1.0, 2.0, 3.0) + plane.lift(p - Point::default());
     let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| lifted(Point::new(x, y)).to_array());
     let mesh = Mesh { points: corners.to_vec(), triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() };
-    (Input::new(Surface::new(&mesh).unwrap(), None), lifted)
+    (Manifold::of(&mesh).unwrap(), lifted)
 }
 
 /// What is said of the plane is said of a plane in space, and there, too, is a canvas made for which it holds.
@@ -292,7 +292,7 @@ fn tilted() -> (Input, impl Fn(Point) -> Point3 + Copy) {
 fn a_plane_in_space_is_certified_as_the_plane_is() {
     let (square, flat) = (Domain::shape("rect:0,0,1,1").unwrap(), turning(13.0));
     let seeds = lattice(Map([13.0 * 1.5_f64.sqrt(), 0.0, 13.0]), 0.02, &mut Random(5));
-    let canvas = Canvas::intrinsic(&square, &flat, 80 * seeds.len()).unwrap();
+    let canvas = Canvas::intrinsic(square.planar(), &flat, 80 * seeds.len()).unwrap();
     let truth = varied(&flat, &seeds, &canvas).certificate;
     let (input, lifted) = tilted();
     let plane = TangentPlane::new(Vector3::new(0.48, 0.6, 0.64));

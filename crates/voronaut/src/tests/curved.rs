@@ -1,14 +1,14 @@
 //! Curved triangles on round domains and surfaces: how far they are from these, by closed forms.
 
 use crate::curved::{Rule, bezier_points, curve_at, points_in_space, side};
-use crate::domain::{Domain, Polygon, Polygons, Ring, from_polygons, shape};
 use crate::geometry::{Point, Point3, Tensor, Tensor3, Vector};
+use crate::manifold::Manifold;
+use crate::manifold::domain::{Domain, Polygon, Polygons, Ring, from_polygons, shape};
 use crate::mesh::{Edges, Mesh};
 use crate::metric::{Expression, MetricField, Norm, Snapshot, Variables};
 use crate::progress::Silent;
 use crate::quality::{surface_fidelity, validity};
 use crate::recipe::{Aim, Boundary, MeshOptions, Meshed, mesh, mesh_for, mesh_surface};
-use crate::surface::{Implicit, Input};
 use std::f64::consts::PI;
 
 fn options(vertices: usize, order: usize, boundary: Boundary) -> MeshOptions {
@@ -163,7 +163,7 @@ fn triangles_are_on_surfaces_of_equations_to_more_than_their_order_and_one() {
     let ball = |p: Point3| p.x.hypot(p.y).hypot(p.z) - 1.0;
     let truths: [(&str, &dyn Fn(Point3) -> f64); 2] = [("torus:1,0.4", &torus), ("sphere:1", &ball)];
     for (spec, distance) in truths {
-        let input = crate::surface::shape(spec, None).unwrap().unwrap();
+        let input = crate::manifold::surface::shape(spec, None).unwrap().unwrap();
         for order in [2, 3] {
             let away = [200, 800]
                 .map(|vertices| (farthest(&input, vertices, order, distance), 1.0 / (vertices as f64).sqrt()));
@@ -173,7 +173,7 @@ fn triangles_are_on_surfaces_of_equations_to_more_than_their_order_and_one() {
 }
 
 /// How far the triangles of a mesh of a surface are from it at most.
-fn farthest(input: &Input, vertices: usize, order: usize, distance: &dyn Fn(Point3) -> f64) -> f64 {
+fn farthest(input: &Manifold, vertices: usize, order: usize, distance: &dyn Fn(Point3) -> f64) -> f64 {
     let metric = |_: Point3| Tensor3::IDENTITY;
     let meshed = mesh_surface(input, &metric, None, &options(vertices, order, Boundary::Auto), &Silent).unwrap();
     assert_eq!(meshed.notes, Vec::<String>::new());
@@ -182,8 +182,7 @@ fn farthest(input: &Input, vertices: usize, order: usize, distance: &dyn Fn(Poin
         Rule::fine(&meshed.mesh).places.into_iter().map(move |place| place.image_in_space(&points))
     });
     let most = all.map(|p| distance(p).abs()).fold(0.0, f64::max);
-    let equation = input.implicit.as_ref().map(|f| f as &dyn Implicit);
-    let seen = surface_fidelity(&meshed.mesh, &input.surface, equation).unwrap().curved.unwrap().hausdorff;
+    let seen = surface_fidelity(&meshed.mesh, input).unwrap().curved.unwrap().hausdorff;
     assert!((seen - most).abs() < 1e-12 + 1e-3 * most, "{seen} {most}");
     most
 }

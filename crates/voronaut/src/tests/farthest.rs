@@ -3,9 +3,9 @@
 use crate::Error;
 use crate::canvas::Canvas;
 use crate::diagram::Diagram;
-use crate::domain::{Domain, Poly, from_poly};
 use crate::dual::{Dual, Moving};
 use crate::geometry::{Point, Tensor};
+use crate::manifold::domain::{Domain, Poly, from_poly};
 use crate::metric::{MetricField, Scaled, Shock, Swirl, Uniform};
 use crate::progress::Silent;
 use crate::quality::metric_quality;
@@ -22,7 +22,7 @@ fn meshed(domain: &Domain, field: &dyn MetricField, vertices: usize, more: &Mesh
 fn the_heap_gives_what_a_scan_gives() {
     let domain = Domain::shape("rect:-1,-1,1,1").unwrap();
     let field = Swirl::default();
-    let canvas = Canvas::intrinsic(&domain, &field, 3000).unwrap();
+    let canvas = Canvas::intrinsic(domain.planar(), &field, 3000).unwrap();
     let mut diagram = Diagram::new(&canvas, &field, &[Point::new(0.1, 0.2)]).unwrap();
     let mut farthest = Farthest::new(&diagram, |_| true);
     for _ in 0..200 {
@@ -113,8 +113,8 @@ fn work_grows_no_faster_than_n_log_n() {
     let work = |seeds: usize| {
         let plan = Plan::new(domain.clone(), Vec::new(), &field, Target::Vertices(seeds)).unwrap();
         let (count, factor) = plan.start(Target::Vertices(seeds), u64::MAX).unwrap();
-        let canvas = Canvas::intrinsic(&domain, &field, 10 * seeds).unwrap();
-        let mut dual = Dual::new(&domain, Scaled { field: &field, factor }).unwrap();
+        let canvas = Canvas::intrinsic(domain.planar(), &field, 10 * seeds).unwrap();
+        let mut dual = Dual::new(domain.corners(), Scaled { field: &field, factor }).unwrap();
         sample_segments(&mut dual, &plan.edges, &plan.arcs, factor, 0);
         let border: Vec<Point> = dual.topology().vertices().map(|v| dual.position(v)).collect();
         let mut diagram = Diagram::new(&canvas, &field, &border).unwrap();
@@ -134,7 +134,7 @@ fn work_grows_no_faster_than_n_log_n() {
 fn no_seed_is_reached_by_no_front() {
     let domain = Domain::shape("rect:0,0,1,1").unwrap();
     let field = Uniform::default();
-    let canvas = Canvas::intrinsic(&domain, &field, 50).unwrap();
+    let canvas = Canvas::intrinsic(domain.planar(), &field, 50).unwrap();
     let diagram = Diagram::new(&canvas, &field, &[]).unwrap();
     assert_eq!(Farthest::new(&diagram, |_| true).pop(&diagram), Some((VertexId(0), f64::INFINITY)));
     assert_eq!(Farthest::new(&diagram, |_| false).pop(&diagram), None);
@@ -143,7 +143,7 @@ fn no_seed_is_reached_by_no_front() {
 #[test]
 fn flat_faces_of_a_canvas_are_not_split_down_to_where_numbers_end() {
     // At the wall on the left edges were halved until their lengths vanished.
-    let canvas = Canvas::intrinsic(&touching_holes(), &Shock { phi: 10.0, lambda: 0.06 }, 70_000).unwrap();
+    let canvas = Canvas::intrinsic(touching_holes().planar(), &Shock { phi: 10.0, lambda: 0.06 }, 70_000).unwrap();
     let least = canvas.embedded().positions.iter().map(|p| p.x).filter(|&x| x > 0.0).fold(1.0, f64::min);
     assert!(least > 1e-20, "{least}");
 }

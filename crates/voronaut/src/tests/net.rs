@@ -2,8 +2,8 @@
 
 use crate::canvas::Canvas;
 use crate::diagram::{Diagram, resolve};
-use crate::domain::Domain;
 use crate::geometry::{Point, Tensor};
+use crate::manifold::domain::Domain;
 use crate::metric::{MetricField, Scaled, Uniform};
 use crate::net::{Net, Simplices};
 use crate::progress::Silent;
@@ -92,7 +92,8 @@ fn protected_seeds_are_and_the_raw_nerve_is_their_dual() {
         demand_protected(&meshed, vertices);
         let unit = Scaled { field, factor: meshed.metric_scale };
         let seeds: Vec<Point> = meshed.mesh.points.iter().map(|p| Point::new(p[0], p[1])).collect();
-        let canvas = resolve(Canvas::intrinsic(domain, &unit, 6000).unwrap(), &unit, &seeds, 8).unwrap().canvas;
+        let canvas =
+            resolve(Canvas::intrinsic(domain.planar(), &unit, 6000).unwrap(), &unit, &seeds, 8).unwrap().canvas;
         let diagram = Diagram::new(&canvas, &unit, &seeds).unwrap();
         let raw = recipe::dual(&diagram, &unit, crate::dual::Road::Both, &Silent).raw_nerve;
         assert_eq!((raw.missing, raw.extra), (0, 0), "{raw:?}");

@@ -1,14 +1,14 @@
 //! What relaxation promises: the energy never rises, its minimum is known, and boundaries stay where they are.
 
-use crate::domain::Domain;
 use crate::geometry::{Point, Tensor};
+use crate::manifold::domain::Domain;
 use crate::mesh::Mesh;
 use crate::metric::MetricField;
 use crate::progress::Silent;
 use crate::recipe::{self, Centroid, MeshOptions, Meshed};
 
 fn field(text: &str, domain: &Domain) -> Box<dyn MetricField> {
-    recipe::metric_named(text, domain).unwrap()
+    recipe::metric_named(text, domain.planar()).unwrap()
 }
 
 fn relaxed(domain: &str, metric: &dyn MetricField, vertices: usize, lloyd: usize, centroid: Centroid) -> Meshed {

@@ -2,9 +2,9 @@
 
 use crate::canvas::{Canvas, size_for};
 use crate::diagram::Diagram;
-use crate::domain::Domain;
 use crate::dual::Road;
 use crate::geometry::Point;
+use crate::manifold::domain::Domain;
 use crate::metric::{MetricField, Shock, Swirl};
 use crate::progress::Silent;
 use crate::recipe::{self, SeedDual};
@@ -48,7 +48,7 @@ fn sides([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
 }
 
 fn both(domain: &Domain, field: &dyn MetricField, seeds: &[Point]) -> SeedDual {
-    let canvas = Canvas::intrinsic(domain, field, size_for(seeds.len(), 60)).unwrap();
+    let canvas = Canvas::intrinsic(domain.planar(), field, size_for(seeds.len(), 60)).unwrap();
     recipe::dual(&Diagram::new(&canvas, field, seeds).unwrap(), field, Road::Both, &Silent)
 }
 
@@ -74,7 +74,7 @@ fn few(domain: &Domain, field: &dyn MetricField, fine: &Canvas, seeds: &[Point])
 #[test]
 fn few_seeds_of_the_swirl_have_the_nerve_of_a_finer_canvas() {
     let (domain, field) = (square(2.0), Swirl::default());
-    let fine = Canvas::intrinsic(&domain, &field, 250_000).unwrap();
+    let fine = Canvas::intrinsic(domain.planar(), &field, 250_000).unwrap();
     for count in [12, 30] {
         few(&domain, &field, &fine, &scattered(count, 1.9, 1));
     }
@@ -83,7 +83,7 @@ fn few_seeds_of_the_swirl_have_the_nerve_of_a_finer_canvas() {
 #[test]
 fn few_seeds_of_the_shock_have_the_nerve_of_a_finer_canvas() {
     let (domain, field) = (square(1.0), Shock::default());
-    let fine = Canvas::intrinsic(&domain, &field, 250_000).unwrap();
+    let fine = Canvas::intrinsic(domain.planar(), &field, 250_000).unwrap();
     for count in [12, 30] {
         few(&domain, &field, &fine, &scattered(count, 0.95, 1));
     }
@@ -104,7 +104,7 @@ fn darts(field: &dyn MetricField, half: f64, spacing: f64, tries: u64) -> Vec<Po
 /// the nerve has not is listed with its margin.
 fn many(name: &str, domain: &Domain, field: &dyn MetricField, seeds: &[Point]) {
     assert!(seeds.len() >= 1500, "{name}: {} seeds", seeds.len());
-    let canvas = Canvas::intrinsic(domain, field, size_for(seeds.len(), 60)).unwrap();
+    let canvas = Canvas::intrinsic(domain.planar(), field, size_for(seeds.len(), 60)).unwrap();
     let diagram = Diagram::new(&canvas, field, seeds).unwrap();
     assert_eq!(diagram.orphans().len(), 0);
     let nerve = counted(diagram.sharp_nerve().triangles.iter().map(|t| t.colours));

@@ -1,8 +1,8 @@
 //! Star sets as canvases: against affine Delaunay triangulations, on shapes with holes, by laws of scale and threads.
 
 use crate::canvas::{Canvas, Kind, StarSet};
-use crate::domain::Domain;
 use crate::geometry::{Point, Tensor, in_circle, signed_area};
+use crate::manifold::domain::Domain;
 use crate::metric::{Shock, Swirl, Uniform};
 use crate::test_cases::plate;
 use crate::triangulation::VertexId;
@@ -39,7 +39,7 @@ fn euclidean_area(canvas: &Canvas) -> f64 {
 fn in_a_uniform_metric_stars_are_those_of_the_affine_delaunay_triangulation() {
     let domain = Domain::shape("rect:0,0,2,1").unwrap();
     for tensor in [Tensor::isotropic(1.0), Tensor::new(30.0, 5.0, 1.0), Tensor::new(1.0, 9.0, 100.0)] {
-        let canvas = Canvas::new(Kind::StarSet, &domain, &Uniform(tensor), 600).unwrap();
+        let canvas = Canvas::new(Kind::StarSet, domain.planar(), &Uniform(tensor), 600).unwrap();
         let figures = *stars(&canvas).figures();
         assert_eq!((figures.vertices, figures.inconsistencies, figures.unsettled), (600, 0, 0), "{tensor:?}");
         assert!((euclidean_area(&canvas) - 2.0).abs() < 1e-12, "{tensor:?}");
@@ -57,7 +57,7 @@ fn in_a_uniform_metric_stars_are_those_of_the_affine_delaunay_triangulation() {
 fn stars_keep_to_the_domain_and_neighbours_are_reciprocal() {
     let domain = holed();
     let field = Shock { phi: 10.0, lambda: 0.6 };
-    let canvas = Canvas::new(Kind::StarSet, &domain, &field, 2000).unwrap();
+    let canvas = Canvas::new(Kind::StarSet, domain.planar(), &field, 2000).unwrap();
     let figures = stars(&canvas).figures();
     assert!(figures.unsettled == 0 && figures.inconsistencies > 0, "{figures:?}");
     let graph = canvas.graph(&field);
@@ -85,7 +85,7 @@ fn an_affine_map_takes_star_sets_to_star_sets() {
             let (x, y) = (p.x / sx, p.y / sy);
             Tensor::new((4.0 + x) / (sx * sx), 0.5 * y / (sx * sy), (1.0 + 8.0 * y * y) / (sy * sy))
         };
-        Canvas::new(Kind::StarSet, &domain, &field, 900).unwrap()
+        Canvas::new(Kind::StarSet, domain.planar(), &field, 900).unwrap()
     };
     let (one, scaled, stretched) = (make(1.0, 1.0), make(64.0, 64.0), make(4.0, 0.5));
     let [one, scaled, stretched] = [&one, &scaled, &stretched].map(stars);
@@ -99,7 +99,9 @@ fn an_affine_map_takes_star_sets_to_star_sets() {
 fn threads_do_not_change_a_star() {
     let domain = Domain::shape("rect:-2,-2,2,2").unwrap();
     let with = |threads: usize| {
-        crate::test_cases::on_threads(threads, || Canvas::new(Kind::StarSet, &domain, &Swirl::default(), 6000).unwrap())
+        crate::test_cases::on_threads(threads, || {
+            Canvas::new(Kind::StarSet, domain.planar(), &Swirl::default(), 6000).unwrap()
+        })
     };
     let (one, two) = (with(1), with(2));
     assert_eq!(one.embedded().positions, two.embedded().positions);
@@ -111,7 +113,7 @@ fn threads_do_not_change_a_star() {
 fn inconsistencies_fall_with_size() {
     let domain = Domain::shape("rect:-2,-2,2,2").unwrap();
     let share = |vertices| {
-        let canvas = Canvas::new(Kind::StarSet, &domain, &Swirl::default(), vertices).unwrap();
+        let canvas = Canvas::new(Kind::StarSet, domain.planar(), &Swirl::default(), vertices).unwrap();
         let figures = stars(&canvas).figures();
         figures.inconsistencies as f64 / figures.simplices as f64
     };
@@ -122,6 +124,6 @@ fn inconsistencies_fall_with_size() {
 #[test]
 fn a_metric_that_is_none_is_an_error() {
     let field = |p: Point| Tensor::isotropic(if p.x > 0.5 { f64::NAN } else { 1.0 });
-    let error = Canvas::new(Kind::StarSet, &Domain::shape("rect:0,0,1,1").unwrap(), &field, 100).unwrap_err();
+    let error = Canvas::new(Kind::StarSet, Domain::shape("rect:0,0,1,1").unwrap().planar(), &field, 100).unwrap_err();
     assert!(error.to_string().starts_with("invalid metric"), "{error}");
 }

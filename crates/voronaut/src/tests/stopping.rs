@@ -1,12 +1,12 @@
 //! Work that is told to stop ends in that error, whenever it is told.
 
-use crate::domain::Domain;
 use crate::error::{Error, Result};
+use crate::manifold::Manifold;
+use crate::manifold::domain::Domain;
+use crate::manifold::surface::metric::{Spec, field};
 use crate::metric::{Bounds, Expression, MetricField, Norm, Snapshot, Swirl, Uniform, Variables};
 use crate::progress::Progress;
 use crate::recipe::{self, Aim, Effort, MeshOptions, Seeding};
-use crate::surface::Input;
-use crate::surface::metric::{Spec, field};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Says stop when it has been asked so often.
@@ -64,7 +64,7 @@ fn polished_meshes() {
 
 #[test]
 fn surface_meshes() {
-    let input = Input::shape("torus:2,0.7", None).unwrap();
+    let input = Manifold::shape("torus:2,0.7", None).unwrap();
     let metric = field(&Spec::parse("curvature").unwrap(), &input, Bounds::default()).unwrap();
     let options = MeshOptions { vertices: Some(200), fit: true, ..MeshOptions::default() };
     stops(20, |progress| recipe::mesh_surface(&input, metric.as_ref(), None, &options, progress).map(drop));

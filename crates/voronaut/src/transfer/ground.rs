@@ -3,8 +3,8 @@
 
 use crate::error::Result;
 use crate::geometry::{Aabb3, Point, Point3, TangentPlane, Vector, Vector3};
+use crate::manifold::surface::Nearest;
 use crate::mesh::{Located, Locator, Mesh};
-use crate::surface::Nearest;
 
 /// An old mesh, ready for searches by any number of threads.
 pub(super) enum Ground {

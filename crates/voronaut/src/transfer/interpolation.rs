@@ -4,9 +4,9 @@ use super::cover::Cover;
 use super::ground::Ground;
 use super::{Field, Place};
 use crate::geometry::{Aabb3, Point3};
+use crate::manifold::OFF_SURFACE;
 use crate::mesh::{Located, Mesh};
 use crate::parallel::prelude::*;
-use crate::surface::OFF_SURFACE;
 
 /// Points farther from the old mesh than this share of its extent are outside it, not on its border.
 const ROUNDING: f64 = 1e-9;

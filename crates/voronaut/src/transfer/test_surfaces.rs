@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::geometry::Point3;
-use crate::surface::{sphere, torus};
+use crate::manifold::surface::{sphere, torus};
 use crate::test_cases::cube;
 
 fn sampled(mesh: &Mesh, f: impl Fn(Point3) -> f64) -> Field {

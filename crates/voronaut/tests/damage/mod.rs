@@ -7,9 +7,9 @@ mod random;
 use bases::{base, cube, renumbered};
 use damages::{ALL, Done};
 use random::Random;
+use voronaut::manifold::surface::{Mended, RepairOptions, Surface, repaired};
 use voronaut::mesh::Mesh;
 use voronaut::quality::validity;
-use voronaut::surface::{Mended, RepairOptions, Surface, repaired};
 
 const MESHES: u64 = 200;
 

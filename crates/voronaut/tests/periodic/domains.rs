@@ -1,8 +1,8 @@
 //! Domains with periodic pairs.
 
 use std::f64::consts::TAU;
-use voronaut::domain::{Domain, Filling, Pslg, Segment, Side};
 use voronaut::geometry::Point;
+use voronaut::manifold::domain::{Domain, Filling, Pslg, Segment, Side};
 
 /// The domain within a polygon: its points in order, each with the label of the segment that begins there.
 pub(super) fn polygon(corners: &[(f64, f64, i32)]) -> Domain {

@@ -2,8 +2,8 @@
 
 use super::domains::Drawn;
 use std::collections::{BTreeMap, HashSet};
-use voronaut::domain::{Domain, Pslg, Segment};
 use voronaut::geometry::Point;
+use voronaut::manifold::domain::{Domain, Pslg, Segment};
 use voronaut::mesh::Mesh;
 use voronaut::quality;
 

@@ -3,8 +3,8 @@
 
 use super::random::{Random, polar};
 use std::f64::consts::TAU;
-use voronaut::domain::{Filling, Pslg, Segment, Side};
 use voronaut::geometry::{Point, Vector};
+use voronaut::manifold::domain::{Filling, Pslg, Segment, Side};
 
 /// A domain in the making.
 #[derive(Default)]

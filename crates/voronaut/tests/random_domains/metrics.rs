@@ -2,8 +2,8 @@
 
 use super::domains::Placement;
 use super::random::Random;
-use voronaut::domain::Domain;
 use voronaut::geometry::{Point, Tensor, Vector};
+use voronaut::manifold::domain::Domain;
 use voronaut::metric::{Boundary, BoundarySizes, MetricField};
 
 /// Sizes along and across an axis, and the axis' angle, in the frame of the drawing.

@@ -17,7 +17,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::{Duration, Instant};
 use voronaut::Error;
-use voronaut::domain::Domain;
+use voronaut::manifold::domain::Domain;
 use voronaut::progress::Silent;
 use voronaut::recipe::{self, MeshOptions};
 

@@ -1,20 +1,21 @@
 //! Surfaces as the world has them: the smallest of each kind that was once refused, or meshed badly.
 
+use voronaut::manifold::Manifold;
+use voronaut::manifold::surface::metric::{Spec, field};
+use voronaut::manifold::surface::{FeatureOptions, RepairOptions, Surface, repaired};
 use voronaut::mesh::Mesh;
 use voronaut::metric::Bounds;
 use voronaut::progress::Silent;
 use voronaut::quality::{Meetings, surface_quality, validity_on};
 use voronaut::recipe::{MeshOptions, Meshed, mesh_surface};
-use voronaut::surface::metric::{Spec, field};
-use voronaut::surface::{FeatureOptions, Input, RepairOptions, Surface, repaired};
 
-fn input(points: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Input {
+fn input(points: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Manifold {
     let mesh = Mesh { points, triangle_labels: vec![0; triangles.len()], triangles, ..Mesh::default() };
-    Input::new(Surface::new(&mesh).unwrap(), None)
+    Manifold::of(&mesh).unwrap()
 }
 
 /// Meshes by a metric; the mesh meets itself where the surface does at most.
-fn meshed(input: &Input, metric: &str, count: usize) -> Meshed {
+fn meshed(input: &Manifold, metric: &str, count: usize) -> Meshed {
     let field = field(&Spec::parse(metric).unwrap(), input, Bounds::default()).unwrap();
     let options = MeshOptions { vertices: Some(count), ..MeshOptions::default() };
     let meshed = mesh_surface(input, field.as_ref(), None, &options, &Silent).unwrap();
@@ -30,7 +31,7 @@ fn two_triangles_become_unit_triangles() {
     let input = input(points, vec![[0, 1, 2], [1, 3, 2]]);
     let found = meshed(&input, "uniform", 1000);
     let metric = field(&Spec::Uniform, &input, Bounds::default()).unwrap();
-    let quality = surface_quality(&found.mesh, &input.surface, metric.as_ref()).unwrap().quality;
+    let quality = surface_quality(&found.mesh, &input, metric.as_ref()).unwrap().quality;
     assert!(found.mesh.points.len() == 1000 && quality.mean > 0.95 && quality.min > 0.4, "{quality:?}");
 }
 
@@ -80,7 +81,7 @@ fn spikes_have_a_mesh() {
 }
 
 /// A square of so many by so many labels.
-fn labelled_square(labels: u32) -> Input {
+fn labelled_square(labels: u32) -> Manifold {
     let n = 20;
     let points = (0..=n).flat_map(|j| (0..=n).map(move |i| [f64::from(i) / 20.0, f64::from(j) / 20.0, 0.0])).collect();
     let (mut triangles, mut triangle_labels) = (Vec::new(), Vec::new());
@@ -92,7 +93,7 @@ fn labelled_square(labels: u32) -> Input {
         }
     }
     let mesh = Mesh { points, triangles, triangle_labels, ..Mesh::default() };
-    Input::new(Surface::new(&mesh).unwrap(), None).cut(&FeatureOptions::default()).unwrap()
+    Manifold::of(&mesh).unwrap().cut(&FeatureOptions::default()).unwrap()
 }
 
 #[test]
@@ -132,7 +133,7 @@ fn cubes_that_share_an_edge_or_a_corner_are_meshed_once_repaired() {
         let mesh = Mesh { points, triangle_labels: vec![0; triangles.len()], triangles, ..Mesh::default() };
         assert!(repaired(&mesh, RepairOptions::default()).and_then(|(mesh, _)| Surface::new(&mesh)).is_err());
         let (mesh, _) = repaired(&mesh, RepairOptions { repair: true }).unwrap();
-        let input = Input::new(Surface::new(&mesh).unwrap(), None).cut(&FeatureOptions::default()).unwrap();
+        let input = Manifold::of(&mesh).unwrap().cut(&FeatureOptions::default()).unwrap();
         assert_eq!(meshed(&input, "uniform", 300).mesh.points.len(), 300);
     }
 }
@@ -140,7 +141,7 @@ fn cubes_that_share_an_edge_or_a_corner_are_meshed_once_repaired() {
 /// Two balls pushed into each other: the mesh meets itself where they do.
 #[test]
 fn what_meets_itself_is_meshed_and_told() {
-    let ball = Input::shape("sphere:1", Some(0.3)).unwrap().surface.to_mesh();
+    let ball = Manifold::shape("sphere:1", Some(0.3)).unwrap().whole_mesh();
     let n = ball.points.len() as u32;
     let points =
         ball.points.iter().copied().chain(ball.points.iter().map(|p| [p[0] + 1.2, p[1] + 0.01, p[2]])).collect();
@@ -154,7 +155,7 @@ fn what_meets_itself_is_meshed_and_told() {
 /// Sheets through one point, which triangles cannot keep apart.
 #[test]
 fn an_equation_whose_triangles_meet_is_refused_with_the_place() {
-    let input = Input::shape("implicit:(x^2+y^2-z^2)*z;-1,-1,-1,1,1,1", None).unwrap();
+    let input = Manifold::shape("implicit:(x^2+y^2-z^2)*z;-1,-1,-1,1,1,1", None).unwrap();
     let field = field(&Spec::Uniform, &input, Bounds::default()).unwrap();
     let error = mesh_surface(&input, field.as_ref(), None, &MeshOptions::default(), &Silent).unwrap_err();
     assert!(error.to_string().contains("triangles of f = 0 meet"), "{error}");
@@ -170,6 +171,6 @@ fn a_patch_between_two_creases_keeps_its_area() {
     let input = input(points, triangles).cut(&FeatureOptions::default()).unwrap();
     let found = meshed(&input, "uniform", 14).mesh;
     let metric = field(&Spec::Uniform, &input, Bounds::default()).unwrap();
-    let quality = surface_quality(&found, &input.surface, metric.as_ref()).unwrap().quality;
+    let quality = surface_quality(&found, &input, metric.as_ref()).unwrap().quality;
     assert!(quality.min > 0.1 && found.points.iter().any(|p| p[2] > 0.5), "{quality:?}");
 }

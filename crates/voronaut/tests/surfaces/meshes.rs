@@ -3,17 +3,18 @@
 use voronaut::canvas::Kind;
 use voronaut::dual::Road;
 use voronaut::geometry::Tensor3;
+use voronaut::manifold::surface::metric::{Spec, SurfaceMetric, field};
+use voronaut::manifold::surface::{FeatureOptions, RepairOptions};
+use voronaut::manifold::{Manifold, Place};
 use voronaut::mesh::Mesh;
 use voronaut::metric::Bounds;
 use voronaut::progress::Silent;
 use voronaut::quality::{surface_fidelity, surface_quality, validity};
 use voronaut::recipe::{MeshOptions, Meshed, Seeding, mesh_surface};
-use voronaut::surface::metric::{Spec, SurfaceMetric, field};
-use voronaut::surface::{FeatureOptions, Implicit, Input, Place, RepairOptions, Surface};
 use voronaut_io::Given;
 
 /// A shape or a file.
-fn read(spec: &str) -> Input {
+fn read(spec: &str) -> Manifold {
     match Given::read(spec, RepairOptions::default()).unwrap().0 {
         Given::Surface(input) => input,
         Given::Plane(_) => panic!("{spec} is a surface"),
@@ -32,10 +33,10 @@ impl SurfaceMetric for Scaled<'_> {
     }
 }
 
-fn meshed(input: &Input, metric: &str, options: &MeshOptions) -> (Meshed, f64, f64) {
+fn meshed(input: &Manifold, metric: &str, options: &MeshOptions) -> (Meshed, f64, f64) {
     let metric = field(&Spec::parse(metric).unwrap(), input, Bounds::default()).unwrap();
     let meshed = mesh_surface(input, metric.as_ref(), None, options, &Silent).unwrap();
-    let figures = surface_quality(&meshed.mesh, &input.surface, &Scaled(metric.as_ref(), meshed.metric_scale)).unwrap();
+    let figures = surface_quality(&meshed.mesh, input, &Scaled(metric.as_ref(), meshed.metric_scale)).unwrap();
     (meshed, figures.quality.mean, figures.quality.min)
 }
 
@@ -59,11 +60,10 @@ fn meshes_are_valid_and_of_the_surface_s_topology() {
         let found = validity(mesh);
         println!("{spec} {metric}: {} vertices, quality {mean:.3} / {min:.3}", mesh.points.len());
         assert!(found.valid, "{spec}: {found:?}");
-        assert_eq!(found.euler, input.surface.euler_characteristic(), "{spec}");
-        assert_eq!(found.boundary_loops, validity(&input.surface.to_mesh()).boundary_loops, "{spec}");
+        assert_eq!(found.euler, input.surface().euler_characteristic(), "{spec}");
+        assert_eq!(found.boundary_loops, validity(&input.surface().to_mesh()).boundary_loops, "{spec}");
         assert!(mesh.points.len().abs_diff(count) * 100 <= count, "{spec}: {}", mesh.points.len());
-        let implicit = input.implicit.as_ref().map(|f| f as &dyn Implicit);
-        let fidelity = surface_fidelity(mesh, &input.surface, implicit).unwrap();
+        let fidelity = surface_fidelity(mesh, &input).unwrap();
         assert!(fidelity.vertex_to_surface.value < 1e-9 * input.diagonal(), "{spec}: {fidelity:?}");
         assert!(fidelity.folded == 0 && !fidelity.reversed, "{spec}: {fidelity:?}");
         assert!(mean > least[0] && min > least[1], "{spec}: {mean} {min}");
@@ -99,7 +99,7 @@ fn fitting_brings_spot_nearer_and_keeps_shapes() {
     let of = |fit: bool| {
         let options = MeshOptions { vertices: Some(1020), fit, ..MeshOptions::default() };
         let (meshed, mean, min) = meshed(&input, "curvature", &options);
-        let fidelity = surface_fidelity(&meshed.mesh, &input.surface, None).unwrap();
+        let fidelity = surface_fidelity(&meshed.mesh, &input).unwrap();
         println!("fit {fit}: quality {mean:.3} / {min:.3}, {:?}", fidelity.both);
         assert!(validity(&meshed.mesh).valid && mean >= 0.9 && min >= 0.2, "{mean} {min}");
         fidelity.both
@@ -134,7 +134,7 @@ fn pointed_cones_have_no_needles() {
         let wall = (0..sides).map(|i| [0, 2 + i, next(i)]);
         let base = (0..sides).filter(|_| is_closed).map(|i| [1, next(i), 2 + i]);
         let cone = Mesh { points: points.collect(), triangles: wall.chain(base).collect(), ..Mesh::default() };
-        let input = Input::new(Surface::new(&cone).unwrap(), None).cut(&FeatureOptions::default()).unwrap();
+        let input = Manifold::of(&cone).unwrap().cut(&FeatureOptions::default()).unwrap();
         let options = MeshOptions { vertices: Some(count), ..MeshOptions::default() };
         let (meshed, mean, min) = meshed(&input, metric, &options);
         assert!(meshed.mesh.points.contains(&[0.0, 0.0, 10.0]), "{sides} sides");

@@ -118,26 +118,29 @@ pub(super) fn crossings(sheet: &Sheet, asked: impl Fn(FaceId) -> bool + Sync) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::surface::{Nearest, Surface, torus};
+    use crate::manifold::Manifold;
+    use crate::manifold::surface::torus;
     use crate::triangulation::Triangulation;
 
-    fn limited(mesh: &Surface, surface: &Surface, moves: &[Vector3]) -> Limited {
+    fn limited(mesh: &Manifold, surface: &Manifold, moves: &[Vector3]) -> Limited {
         let (own, other) = (Sheet::of(mesh), Sheet::of(surface));
-        let tree = Nearest::new(surface);
-        let below = |f| tree.closest(surface, Point3::weighted(mesh.triangle(f), [1.0 / 3.0; 3])).unwrap().place.face;
+        let below = |f| {
+            let middle = Point3::weighted(mesh.triangle(f), [1.0 / 3.0; 3]);
+            surface.closest_of_triangles(middle).unwrap().place.face
+        };
         Guard::new(&other, &own, below).limit(&own, moves)
     }
 
     #[test]
     fn small_moves_are_free_and_those_across_a_neighbour_are_not() {
-        let (mesh, surface) = (torus(2.0, 0.7, 0.6).unwrap(), torus(2.0, 0.7, 0.2).unwrap());
+        let [mesh, surface] = [0.6, 0.2].map(|edge| Manifold::new(torus(2.0, 0.7, edge).unwrap(), None));
         let neighbour = mesh.topology().target(mesh.topology().start(VertexId(5)).unwrap());
-        let across = mesh.position(neighbour) - mesh.position(VertexId(5));
+        let across = mesh.positions()[neighbour.index()] - mesh.positions()[5];
         let moved = |part: f64| {
             let mut moves = vec![Vector3::default(); mesh.positions().len()];
             moves[5] = across * part;
             let found = limited(&mesh, &surface, &moves);
-            let reached = found.positions[5].distance(mesh.position(VertexId(5))) / across.norm();
+            let reached = found.positions[5].distance(mesh.positions()[5]) / across.norm();
             assert!((0..moves.len()).all(|v| v == 5 || found.positions[v] == mesh.positions()[v]));
             (found.held_back, reached)
         };

@@ -14,8 +14,8 @@ mod tests;
 
 use crate::error::Result;
 use crate::geometry::{Point3, Vector3};
+use crate::manifold::Manifold;
 use crate::mesh::Mesh;
-use crate::surface::Surface;
 use crate::triangulation::VertexId;
 use guard::Guard;
 use samples::{Assignment, Samples, Sheet};
@@ -78,9 +78,9 @@ pub(crate) struct Misfit {
 /// of threads. A few kilobytes per triangle of the mesh are in use.
 ///
 /// # Errors
-/// As [`Surface::new`], of a mesh that is no surface.
-pub(crate) fn fit(mesh: &Mesh, surface: &Surface, options: &FitOptions) -> Result<Fitted> {
-    let start = Surface::new(mesh)?;
+/// As [`Manifold::of`], of a mesh that is no surface.
+pub(crate) fn fit(mesh: &Mesh, surface: &Manifold, options: &FitOptions) -> Result<Fitted> {
+    let start = Manifold::of(mesh)?;
     let samples = Samples::new(surface, options.samples.max(1) * start.topology().face_count());
     let first = samples.assign(surface, &start, None);
     let before = Misfit::of(&first);
@@ -94,7 +94,7 @@ pub(crate) fn fit(mesh: &Mesh, surface: &Surface, options: &FitOptions) -> Resul
     let mut fitted = mesh.clone();
     fitted.points = fitting.sheet.positions.iter().map(|p| p.to_array()).collect();
     // Steps follow closest points from triangle to triangle; what counts is the closest of all.
-    let end = Surface::new(&fitted).ok().map(|end| Misfit::of(&samples.assign(surface, &end, Some(&fitting.at))));
+    let end = Manifold::of(&fitted).ok().map(|end| Misfit::of(&samples.assign(surface, &end, Some(&fitting.at))));
     let Some(after) = end.filter(|after| after.rms <= before.rms) else {
         return Ok(Fitted { mesh: mesh.clone(), before, after: before, moved: 0, held_back, steps: 0 });
     };
@@ -132,9 +132,9 @@ struct Fitting<'a> {
 }
 
 impl<'a> Fitting<'a> {
-    fn new(mesh: &Mesh, start: &'a Surface, samples: &'a Samples<'a>, at: Assignment, stiffness: f64) -> Self {
+    fn new(mesh: &Mesh, start: &'a Manifold, samples: &'a Samples<'a>, at: Assignment, stiffness: f64) -> Self {
         let sheet = Sheet::of(start);
-        let normal = |v: u32| start.vertex_normal(VertexId(v)).unwrap_or_default();
+        let normal = |v: u32| start.vertex_normal(VertexId(v));
         let first = (0..).zip(start.positions()).map(|(v, &p)| (p, normal(v))).collect();
         Self {
             guard: Guard::new(&samples.surface, &sheet, |f| at.below(f)),
@@ -184,7 +184,7 @@ impl Misfit {
 }
 
 /// Whether each vertex may move.
-fn free_vertices(mesh: &Mesh, surface: &Surface) -> Vec<bool> {
+fn free_vertices(mesh: &Mesh, surface: &Manifold) -> Vec<bool> {
     let t = surface.topology();
     let slots = (0..mesh.points.len() as u32).map(VertexId);
     let mut free: Vec<bool> = slots.map(|v| t.is_vertex(v) && !t.is_border_vertex(v)).collect();

@@ -3,8 +3,9 @@
 
 use crate::elementary::Elementary;
 use crate::geometry::{Point3, Vector3};
+use crate::manifold::Manifold;
+use crate::manifold::surface::closest_weights;
 use crate::parallel::prelude::*;
-use crate::surface::{Nearest, Surface, closest_weights};
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
 
 /// A point of the surface, and the part of the surface's area that it stands for.
@@ -80,22 +81,21 @@ impl Assignment {
 
 impl<'a> Samples<'a> {
     /// About `count` samples of the surface, even by area, and all its vertices.
-    pub(super) fn new(surface: &'a Surface, count: usize) -> Self {
+    pub(super) fn new(surface: &'a Manifold, count: usize) -> Self {
         Self { surface: Sheet::of(surface), of_surface: of_surface(surface, count) }
     }
 
     /// Closest points among all triangles of a mesh and of the surface; none are farther than those known.
-    pub(super) fn assign(&self, surface: &Surface, mesh: &Surface, known: Option<&Assignment>) -> Assignment {
+    pub(super) fn assign(&self, surface: &Manifold, mesh: &Manifold, known: Option<&Assignment>) -> Assignment {
         let sheet = Sheet::of(mesh);
-        let trees = [Nearest::new(surface), Nearest::new(mesh)];
-        let find = |tree: &Nearest, sheet: &Sheet, p: Point3, known: Option<Foot>| {
-            let nearer = tree.nearer(p, known.map_or(f64::INFINITY, |foot| foot.square()));
+        let find = |on: &Manifold, sheet: &Sheet, p: Point3, known: Option<Foot>| {
+            let nearer = on.nearer(p, known.map_or(f64::INFINITY, |foot| foot.square()));
             nearer.map(|face| sheet.foot(face, p)).or(known).unwrap_or_else(|| sheet.foot(FaceId(0), p))
         };
         self.measured(
             &sheet,
-            |i, p| find(&trees[1], &sheet, p, known.map(|known| known.to_mesh[i])),
-            |i, p| find(&trees[0], &self.surface, p, known.map(|known| known.to_surface[i])),
+            |i, p| find(mesh, &sheet, p, known.map(|known| known.to_mesh[i])),
+            |i, p| find(surface, &self.surface, p, known.map(|known| known.to_surface[i])),
         )
     }
 
@@ -173,7 +173,7 @@ fn of_mesh(mesh: &Sheet, i: usize) -> (Point3, f64) {
     (Point3::weighted(corners, weights), 0.5 * area_vector(corners).norm() * share)
 }
 
-fn of_surface(surface: &Surface, count: usize) -> Vec<Sample> {
+fn of_surface(surface: &Manifold, count: usize) -> Vec<Sample> {
     let t = surface.topology();
     let vertices = t.vertices().count();
     let total = surface.area();
@@ -190,7 +190,8 @@ fn of_surface(surface: &Surface, count: usize) -> Vec<Sample> {
     }
     let share = vertices as f64 / count as f64;
     let star_area = |v: VertexId| t.star(v).map(|h| surface.area_vector(h.face()).norm() / 6.0).sum::<f64>();
-    samples.extend(t.vertices().map(|v| Sample { place: surface.position(v), weight: share * star_area(v) }));
+    samples
+        .extend(t.vertices().map(|v| Sample { place: surface.positions()[v.index()], weight: share * star_area(v) }));
     samples
 }
 
@@ -245,7 +246,7 @@ fn square(v: Vector3) -> f64 {
 
 impl<'a> Sheet<'a> {
     /// A surface's triangles, where they are.
-    pub(super) fn of(surface: &'a Surface) -> Self {
+    pub(super) fn of(surface: &'a Manifold) -> Self {
         Self { topology: surface.topology(), positions: surface.positions().to_vec() }
     }
 
@@ -358,14 +359,14 @@ pub(super) fn area_vector([a, b, c]: [Point3; 3]) -> Vector3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::manifold::surface::torus;
     use crate::mesh::Mesh;
-    use crate::surface::{Nearest, torus};
     use proptest::prelude::*;
     use std::f64::consts::TAU;
 
     #[test]
     fn means_over_the_mesh_are_exact_of_quadratic_functions() {
-        let surface = torus(2.0, 0.7, 0.9).unwrap();
+        let surface = Manifold::new(torus(2.0, 0.7, 0.9).unwrap(), None);
         let sheet = Sheet::of(&surface);
         for f in surface.topology().faces().take(10) {
             let numbers = (0..PER_TRIANGLE).map(|k| PER_TRIANGLE * f.index() + k);
@@ -386,7 +387,7 @@ mod tests {
 
     #[test]
     fn samples_of_the_surface_are_even() {
-        let surface = torus(2.0, 0.7, 0.2).unwrap();
+        let surface = Manifold::new(torus(2.0, 0.7, 0.2).unwrap(), None);
         let samples = of_surface(&surface, 10_000);
         assert_eq!(samples.len(), 10_000 + surface.positions().len());
         let total: f64 = samples.iter().map(|s| s.weight).sum();
@@ -400,16 +401,15 @@ mod tests {
     proptest! {
         #[test]
         fn descents_from_nearby_find_the_closest(u in 0.0..TAU, v in 0.0..TAU, off in -0.2..0.2, face in 0_u32..100) {
-            let surface = torus(2.0, 0.7, 0.4).unwrap();
+            let surface = Manifold::new(torus(2.0, 0.7, 0.4).unwrap(), None);
             let sheet = Sheet::of(&surface);
-            let tree = Nearest::new(&surface);
             let at = |u: f64, v: f64, tube: f64| {
                 let ring = 2.0 + tube * v.cos();
                 Point3::new(ring * u.cos(), ring * u.sin(), tube * v.sin())
             };
             let p = at(u, v, 0.7 + off);
-            let truth = tree.closest(&surface, p).unwrap();
-            let near = tree.closest(&surface, at(u + 0.3, v - 0.4, 0.7)).unwrap().place.face;
+            let truth = surface.closest_of_triangles(p).unwrap();
+            let near = surface.closest_of_triangles(at(u + 0.3, v - 0.4, 0.7)).unwrap().place.face;
             let foot = sheet.descend(near, p);
             prop_assert!((foot.square().sqrt() - truth.distance).abs() < 1e-12);
             prop_assert!((foot.weights.iter().sum::<f64>() - 1.0).abs() < 1e-14);
@@ -432,13 +432,13 @@ mod tests {
             [[1.0, 0.0, 0.0], [0.5, 0.9, 0.0], [-0.5, 0.9, 0.0], [0.0, 0.4, 0.9], [0.4, 0.0, 0.9], [0.5, -0.9, 0.0]];
         let points = std::iter::once([0.0; 3]).chain(rim).collect();
         let triangles = (0..6).map(|i| [0, i + 1, (i + 1) % 6 + 1]).collect();
-        let surface = Surface::new(&Mesh { points, triangles, ..Mesh::default() }).unwrap();
+        let surface = Manifold::of(&Mesh { points, triangles, ..Mesh::default() }).unwrap();
         let sheet = Sheet::of(&surface);
         let p = Point3::new(0.17, 0.1, 0.5);
         let below = FaceId(0);
         assert!(sheet.foot(below, p).is_inside());
         assert!(sheet.nearer_beside(&sheet.foot(below, p), p).is_none());
-        let truth = Nearest::new(&surface).closest(&surface, p).unwrap().distance;
+        let truth = surface.closest_of_triangles(p).unwrap().distance;
         assert!((sheet.descend(below, p).square().sqrt() - truth).abs() < 1e-14 && truth < 0.1);
     }
 }

@@ -134,7 +134,7 @@ fn add(x: &mut [Vector3], v: &[Vector3], factor: f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::surface::torus;
+    use crate::manifold::surface::torus;
     use crate::triangulation::FaceId;
 
     /// Some pairs with every weight, direction and gap, by a sequence without pattern.

@@ -2,12 +2,13 @@
 
 use super::{FitOptions, Fitted, fit};
 use crate::geometry::{Point3, Vector3};
+use crate::manifold::Manifold;
+use crate::manifold::surface::{sphere, torus};
 use crate::mesh::Mesh;
-use crate::surface::{Nearest, Surface, sphere, torus};
 use crate::test_cases::cases;
 use proptest::prelude::*;
 
-fn fitted(mesh: &Mesh, surface: &Surface) -> Fitted {
+fn fitted(mesh: &Mesh, surface: &Manifold) -> Fitted {
     fit(mesh, surface, &FitOptions::default()).unwrap()
 }
 
@@ -32,22 +33,21 @@ fn mean_height(mesh: &Mesh) -> f64 {
 
 #[test]
 fn on_a_sphere_vertices_go_out_by_the_mean_height() {
-    let surface = sphere(1.0, 0.04).unwrap();
+    let surface = Manifold::new(sphere(1.0, 0.04).unwrap(), None);
     let mesh = sphere(1.0, 0.3).unwrap().to_mesh();
     let found = fitted(&mesh, &surface);
     assert!(found.before.rms > 3.0 * found.after.rms, "{} to {}", found.before.rms, found.after.rms);
     let radii = found.mesh.points.iter().map(|&p| (Point3::from(p) - Point3::default()).norm());
     let out = radii.sum::<f64>() / mesh.points.len() as f64 - 1.0;
-    let expected = mean_height(&mesh) - mean_height(&surface.to_mesh());
+    let expected = mean_height(&mesh) - mean_height(&surface.whole_mesh());
     assert!((out / expected - 1.0).abs() < 0.04, "{out} for {expected}");
     assert_eq!((found.moved, found.held_back), (mesh.points.len(), 0));
 }
 
 /// Root mean square distance both ways, by closest points of all and samples of other places than those of `fit`.
-fn distance(mesh: &Mesh, surface: &Surface) -> f64 {
-    let other = Surface::new(mesh).unwrap();
-    let one_way = |from: &Surface, to: &Surface| {
-        let tree = Nearest::new(to);
+fn distance(mesh: &Mesh, surface: &Manifold) -> f64 {
+    let other = Manifold::of(mesh).unwrap();
+    let one_way = |from: &Manifold, to: &Manifold| {
         let parts = if from.topology().face_count() < 100 { 24 } else { 3 };
         let (mut sum, mut area) = (0.0, 0.0);
         for f in from.topology().faces() {
@@ -56,7 +56,7 @@ fn distance(mesh: &Mesh, surface: &Surface) -> f64 {
                 let third = 1.0 / 3.0;
                 let [s, t] = [i, j].map(|k: usize| (k as f64 + third) / parts as f64);
                 let p = Point3::weighted(from.triangle(f), [1.0 - s - t, s, t]);
-                sum += own * tree.closest(to, p).unwrap().distance.powi(2);
+                sum += own * to.closest_of_triangles(p).unwrap().distance.powi(2);
                 area += own;
             }
         }
@@ -67,7 +67,7 @@ fn distance(mesh: &Mesh, surface: &Surface) -> f64 {
 
 #[test]
 fn an_icosahedron_gets_the_best_radius() {
-    let surface = sphere(1.0, 0.1).unwrap();
+    let surface = Manifold::new(sphere(1.0, 0.1).unwrap(), None);
     let mesh = sphere(1.0, 1.2).unwrap().to_mesh();
     assert_eq!(mesh.points.len(), 12);
     let scaled = |r: f64| Mesh { points: mesh.points.iter().map(|p| p.map(|x| x * r)).collect(), ..mesh.clone() };
@@ -98,7 +98,7 @@ fn sheet(n: u32, height: impl Fn(f64, f64) -> f64) -> Mesh {
 
 #[test]
 fn what_is_flat_stays_to_the_last_bit() {
-    let flat = Surface::new(&sheet(11, |x, y| 0.3 * x - 0.7 * y)).unwrap();
+    let flat = Manifold::of(&sheet(11, |x, y| 0.3 * x - 0.7 * y)).unwrap();
     let mesh = sheet(4, |x, y| 0.3 * x - 0.7 * y);
     let found = fitted(&mesh, &flat);
     assert_eq!((found.mesh, found.moved, found.steps), (mesh, 0, 0));
@@ -107,7 +107,7 @@ fn what_is_flat_stays_to_the_last_bit() {
 #[test]
 fn borders_features_and_what_is_required_stay() {
     let dome = |x: f64, y: f64| x * (1.0 - x) + y * (1.0 - y);
-    let surface = Surface::new(&sheet(40, dome)).unwrap();
+    let surface = Manifold::of(&sheet(40, dome)).unwrap();
     let mut mesh = sheet(6, dome);
     (mesh.corners, mesh.required_points) = (vec![16], vec![17]);
     (mesh.edges, mesh.edge_labels) = (vec![[30, 31]], vec![6]);
@@ -126,7 +126,7 @@ fn borders_features_and_what_is_required_stay() {
 fn rotations_and_scales_change_nothing() {
     let surface = torus(2.0, 0.7, 0.25).unwrap().to_mesh();
     let mesh = torus(2.0, 0.7, 0.7).unwrap().to_mesh();
-    let truth = fitted(&mesh, &Surface::new(&surface).unwrap());
+    let truth = fitted(&mesh, &Manifold::of(&surface).unwrap());
     assert!(truth.before.rms > 1.5 * truth.after.rms);
     // Columns are perpendicular units: 2/7, 3/7, 6/7 and their like.
     let turned = |[x, y, z]: [f64; 3]| {
@@ -136,7 +136,7 @@ fn rotations_and_scales_change_nothing() {
     for scale in [1.0, 1e-6, 1e6] {
         let image =
             |m: &Mesh| Mesh { points: m.points.iter().map(|&p| turned(p).map(|x| x * scale)).collect(), ..m.clone() };
-        let found = fitted(&image(&mesh), &Surface::new(&image(&surface)).unwrap());
+        let found = fitted(&image(&mesh), &Manifold::of(&image(&surface)).unwrap());
         for (p, q) in found.mesh.points.iter().zip(image(&truth.mesh).points) {
             assert!(Point3::from(*p).distance(q.into()) < 1e-6 * scale, "{p:?} {q:?}");
         }
@@ -147,7 +147,7 @@ fn rotations_and_scales_change_nothing() {
 
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
-    let (surface, mesh) = (torus(2.0, 0.7, 0.3).unwrap(), torus(2.0, 0.7, 0.8).unwrap().to_mesh());
+    let (surface, mesh) = (Manifold::new(torus(2.0, 0.7, 0.3).unwrap(), None), torus(2.0, 0.7, 0.8).unwrap().to_mesh());
     let with = |threads| crate::test_cases::on_threads(threads, || fitted(&mesh, &surface));
     let one = with(1);
     assert_eq!(one, with(2));
@@ -156,7 +156,7 @@ fn any_number_of_threads_gives_the_same_bits() {
 
 #[test]
 fn what_is_no_surface_is_an_error() {
-    let surface = sphere(1.0, 0.5).unwrap();
+    let surface = Manifold::new(sphere(1.0, 0.5).unwrap(), None);
     let broken = Mesh { triangles: vec![[0, 1, 9]], points: vec![[0.0; 3]; 3], ..Mesh::default() };
     assert!(fit(&broken, &surface, &FitOptions::default()).unwrap_err().to_string().contains("vertex 9"));
 }
@@ -224,11 +224,11 @@ proptest! {
         off in 0.0..0.4,
         samples in 1_usize..12,
     ) {
-        let surface = torus(2.0, 0.7, 0.3).unwrap();
+        let surface = Manifold::new(torus(2.0, 0.7, 0.3).unwrap(), None);
         let mesh = pushed(&push, along, off);
         let found = fit(&mesh, &surface, &FitOptions { samples, ..FitOptions::default() }).unwrap();
         prop_assert!(found.after.rms <= found.before.rms);
-        Surface::new(&found.mesh).unwrap();
+        Manifold::of(&found.mesh).unwrap();
         for ([facing, quality], [was_facing, was_quality]) in shapes(&found.mesh).into_iter().zip(shapes(&mesh)) {
             // What is kept is a cosine of 0.2 to the surface's triangles, an angle of 1.369, and their normals are up to 0.25 from
             // the torus's own: where the angle to that was 1.12 (cosine 0.436), it stays below 1.62 (-0.049).

@@ -252,8 +252,8 @@ impl<S: Sheet> Rounds for Work<S> {
 mod tests {
     use super::super::plane::Flat;
     use super::*;
-    use crate::domain::Domain;
     use crate::geometry::Point;
+    use crate::manifold::domain::Domain;
     use crate::metric::{Expression, Norm, Snapshot, Variables};
     use crate::optimise::springs::tests::seeded;
     use crate::planar::delaunay;

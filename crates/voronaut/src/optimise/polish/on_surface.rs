@@ -4,8 +4,8 @@ use super::Sheet;
 use super::moves::Frame;
 use crate::dual::{Kind, Moving, SurfaceDual};
 use crate::geometry::{Point3, Seen, Vector, Vector3};
+use crate::manifold::Place;
 use crate::metric::{Expression, Near};
-use crate::surface::Place;
 use crate::triangulation::{HalfEdge, Triangulation, VertexId};
 
 /// Flips make no triangle whose normal has a lesser cosine with those of the surface at its corners, unless one had before.

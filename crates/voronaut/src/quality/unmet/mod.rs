@@ -14,11 +14,12 @@ use crate::error::Result;
 use crate::geodesic::is_unit;
 use crate::geometry::{NEEDLE, Point, Point3, Vector};
 use crate::lists::{distinct, in_order};
+use crate::manifold::Manifold;
+use crate::manifold::surface::FeatureOptions;
+use crate::manifold::surface::metric::SurfaceMetric;
 use crate::mesh::{EdgeSide, Edges, Mesh, edges_of};
 use crate::metric::MetricField;
 use crate::parallel::prelude::*;
-use crate::surface::metric::SurfaceMetric;
-use crate::surface::{FeatureOptions, Surface};
 use forced::{Curves, Density, Forced, Judged};
 use std::collections::BTreeMap;
 
@@ -222,7 +223,7 @@ pub fn unmet(mesh: &Mesh, metric: &dyn MetricField, see: impl FnMut([f64; 2])) -
 /// As [`surface_quality`](super::surface_quality()), but that a mesh without triangles has no such edges.
 pub fn surface_unmet(
     mesh: &Mesh,
-    surface: &Surface,
+    surface: &Manifold,
     metric: &dyn SurfaceMetric,
     see: impl FnMut([f64; 2]),
 ) -> Result<Unmet> {

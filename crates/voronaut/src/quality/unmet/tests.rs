@@ -5,7 +5,7 @@ use super::super::surface_quality::surface_quality;
 use super::super::test_meshes::{grid, lattice, mesh};
 use super::*;
 use crate::geometry::{Tensor, Tensor3};
-use crate::surface::metric::Constant;
+use crate::manifold::surface::metric::Constant;
 
 const UNIT: fn(Point) -> Tensor = |_| Tensor::IDENTITY;
 
@@ -13,7 +13,7 @@ fn unmet(mesh: &Mesh, metric: &dyn MetricField) -> Result<Unmet> {
     super::unmet(mesh, metric, |_| ())
 }
 
-fn surface_unmet(mesh: &Mesh, surface: &Surface, metric: &dyn SurfaceMetric) -> Result<Unmet> {
+fn surface_unmet(mesh: &Mesh, surface: &Manifold, metric: &dyn SurfaceMetric) -> Result<Unmet> {
     super::surface_unmet(mesh, surface, metric, |_| ())
 }
 
@@ -190,7 +190,7 @@ fn sides_of_curved_triangles_are_measured_along_their_curves() {
 #[test]
 fn surfaces_have_the_same_causes() {
     let flat = lattice(12);
-    let surface = Surface::new(&flat).unwrap();
+    let surface = Manifold::of(&flat).unwrap();
     let fine = Constant(Tensor3::isotropic(0.5));
     let found = surface_unmet(&flat, &surface, &fine).unwrap();
     assert_eq!(counts(&found), [0, found.lengths.len(), 0, 0]);
@@ -201,7 +201,7 @@ fn surfaces_have_the_same_causes() {
         Tensor3::from_disk([m.xx, m.xy, m.yy, 0.0, 0.0, 1.0])
     };
     let truth = unmet(&wild, &planar).unwrap();
-    let found = surface_unmet(&wild, &Surface::new(&wild).unwrap(), &metric).unwrap();
+    let found = surface_unmet(&wild, &Manifold::of(&wild).unwrap(), &metric).unwrap();
     assert_eq!(found.edges.len(), truth.edges.len());
     // Off the sheet its metric is that of its rim.
     let differ = found.edges.iter().zip(&truth.edges).filter(|(a, b)| a.cause != b.cause).count();
@@ -212,7 +212,7 @@ fn surfaces_have_the_same_causes() {
 fn quality_is_what_is_measured_alone() {
     let (wild, planar) = waves(4.0);
     assert_eq!(unmet(&wild, &planar).unwrap().quality, Some(metric_quality(&wild, &planar).unwrap()));
-    let (surface, metric) = (Surface::new(&wild).unwrap(), Constant(Tensor3::IDENTITY));
+    let (surface, metric) = (Manifold::of(&wild).unwrap(), Constant(Tensor3::IDENTITY));
     let alone = surface_quality(&wild, &surface, &metric).unwrap();
     assert_eq!(surface_unmet(&wild, &surface, &metric).unwrap().quality, Some(alone));
     assert_eq!(unmet(&Mesh::default(), &UNIT).unwrap().quality, None);

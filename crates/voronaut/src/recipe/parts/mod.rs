@@ -13,23 +13,18 @@ mod test_surfaces;
 #[cfg(test)]
 mod tests;
 
-use super::settle::Stopwatch;
-use super::{Aim, MeshOptions, Meshed, Mesher, Seeding, closed_form_scale, mesh_for};
-use crate::domain::{Domain, from_mesh};
+use super::stopwatch::Stopwatch;
+use super::{MeshOptions, Meshed, Mesher, Seeding, closed_form_scale};
 use crate::elementary::Elementary;
 use crate::error::{Error, Result};
 use crate::geometry::Tensor;
 use crate::lists::marked;
 use crate::mesh::{Edges, Mesh};
-use crate::metric::{MetricField, Sampled};
 use crate::progress::Progress;
 use crate::quality::Validity;
-use crate::surface::Input;
-use crate::surface::metric::SurfaceMetric;
-use plane::InPlane;
+pub use plane::{mesh_in_parts, mesh_part};
 use stitch::{Joiner, Kept, Whole};
-use surface::OnSurface;
-pub use surface::mesh_surface_part;
+pub use surface::{mesh_surface_in_parts, mesh_surface_part};
 
 /// Vertices of a part, where the number of parts follows from that of vertices: a minute's work.
 const VERTICES_PER_PART: usize = 100_000;
@@ -98,61 +93,8 @@ struct Partition {
     notes: Vec<String>,
 }
 
-/// The mesh of a part of a planar domain. The field is asked where the part has no metric of its own.
-///
-/// # Errors
-/// As of [`mesh_for`].
-pub fn mesh_part(
-    part: &Part,
-    field: &dyn MetricField,
-    aim: Option<Aim>,
-    options: &MeshOptions,
-    progress: &dyn Progress,
-) -> Result<Mesh> {
-    let domain = Domain::new(&from_mesh(&part.domain)?)?;
-    let own = part.metric.as_ref().map(|(mesh, tensors)| Sampled::new(mesh, tensors)).transpose()?;
-    let field = own.as_ref().map_or(field, |own| own);
-    Ok(mesh_for(&domain, field, aim, &with_count(options, part.vertices), progress)?.mesh)
-}
-
 /// Who makes the meshes of a round of parts, and hands them over in their order, so that there need not be all at once; the round has a name.
 type Make<'a> = &'a mut dyn FnMut(&'static str, &[Part], &mut dyn FnMut(Mesh)) -> Result<()>;
-
-/// Meshes a planar domain by a metric in so many parts, or in parts of about 100,000 vertices. There are three rounds of [`Part`]s: the
-/// parts themselves (`parts`), strips along the cuts (`strips`), and what is around the ends of strips that meet (`junctions`). The outer
-/// edges of these stay. With an aim, parts ask for the metric as a whole. The meshes of a round are the business of `make`, which has its name, and
-/// hands them over in the order of its parts: by [`mesh_part`], wherever that may be. The number of vertices is met exactly.
-///
-/// # Errors
-/// As of [`mesh_for`], and of `make`. [`Error::Unsupported`] of options that need the whole domain: periodic pairs, the net, star sets,
-/// seeding other than by sizes. [`Error::Limit`] where parts would have fewer than 1,000 vertices.
-pub fn mesh_in_parts(
-    domain: &Domain,
-    field: &dyn MetricField,
-    aim: Option<Aim>,
-    parts: Option<usize>,
-    options: &MeshOptions,
-    make: Make,
-    progress: &dyn Progress,
-) -> Result<Meshed> {
-    in_parts(&InPlane { domain, field, is_whole: aim.is_some() }, parts, options, make, progress)
-}
-
-/// [`mesh_in_parts`] of a surface that was cut along its features ([`Input::cut`]), whose parts are made by [`mesh_surface_part`]. Cuts are
-/// along edges of its triangles. The number of vertices is met as nearly as parts meet theirs.
-///
-/// # Errors
-/// As of [`mesh_in_parts`]; [`Error::Unsupported`] of vertices off the surface (`fit`) and of distances to it (`hausd`), too.
-pub fn mesh_surface_in_parts(
-    input: &Input,
-    metric: &dyn SurfaceMetric,
-    parts: Option<usize>,
-    options: &MeshOptions,
-    make: Make,
-    progress: &dyn Progress,
-) -> Result<Meshed> {
-    in_parts(&OnSurface { input, metric }, parts, options, make, progress)
-}
 
 fn in_parts(
     on: &impl Divisible,

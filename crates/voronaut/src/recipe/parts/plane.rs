@@ -3,30 +3,68 @@
 use super::bisect::{areas_of, counts, owners};
 use super::region::{refuse_label, submesh};
 use super::stitch::{Kept, Position};
-use super::{COARSE, Divisible, Part, Partition, number_of_parts, with_count};
-use crate::domain::{Domain, Segment, from_mesh};
+use super::{COARSE, Divisible, Make, Part, Partition, in_parts, number_of_parts, with_count};
 use crate::elementary::Elementary;
 use crate::error::Result;
 use crate::geodesic::chord_by;
 use crate::geometry::{Point, Point3, Tensor, centroid};
 use crate::lists::{Rows, distinct, in_order};
+use crate::manifold::domain::{Domain, Segment, from_mesh};
 use crate::mesh::{EdgeSide, Edges, Mesh};
-use crate::metric::{MetricField, complexities, nearby};
+use crate::metric::{MetricField, Sampled, complexities, nearby};
 use crate::parallel::prelude::*;
 use crate::progress::Progress;
 use crate::quality::{self, Validity};
-use crate::recipe::settle::Stopwatch;
-use crate::recipe::{Effort, Job, MeshOptions, mesh};
+use crate::recipe::plane::{Case, Job};
+use crate::recipe::stopwatch::Stopwatch;
+use crate::recipe::{Aim, Effort, MeshOptions, Meshed, mesh, mesh_for};
 use crate::sampling::{MetricArc, Plan, pieces};
 use std::collections::{HashMap, HashSet};
 
+/// The mesh of a part of a planar domain. The field is asked where the part has no metric of its own.
+///
+/// # Errors
+/// As of [`mesh_for`].
+pub fn mesh_part(
+    part: &Part,
+    field: &dyn MetricField,
+    aim: Option<Aim>,
+    options: &MeshOptions,
+    progress: &dyn Progress,
+) -> Result<Mesh> {
+    let domain = from_mesh(&part.domain)?.validated()?;
+    let own = part.metric.as_ref().map(|(mesh, tensors)| Sampled::new(mesh, tensors)).transpose()?;
+    let field = own.as_ref().map_or(field, |own| own);
+    Ok(mesh_for(&domain, field, aim, &with_count(options, part.vertices), progress)?.mesh)
+}
+
+/// Meshes a planar domain by a metric in so many parts, or in parts of about 100,000 vertices. There are three rounds of [`Part`]s: the
+/// parts themselves (`parts`), strips along the cuts (`strips`), and what is around the ends of strips that meet (`junctions`). The outer
+/// edges of these stay. With an aim, parts ask for the metric as a whole. The meshes of a round are the business of `make`, which has its name, and
+/// hands them over in the order of its parts: by [`mesh_part`], wherever that may be. The number of vertices is met exactly.
+///
+/// # Errors
+/// As of [`mesh_for`], and of `make`. [`Error::Unsupported`] of options that need the whole domain: periodic pairs, the net, star sets,
+/// seeding other than by sizes. [`Error::Limit`] where parts would have fewer than 1,000 vertices.
+pub fn mesh_in_parts(
+    domain: &Domain,
+    field: &dyn MetricField,
+    aim: Option<Aim>,
+    parts: Option<usize>,
+    options: &MeshOptions,
+    make: Make,
+    progress: &dyn Progress,
+) -> Result<Meshed> {
+    in_parts(&InPlane { domain, field, is_whole: aim.is_some() }, parts, options, make, progress)
+}
+
 /// A domain with its metric.
 #[derive(Clone, Copy)]
-pub(super) struct InPlane<'a> {
-    pub(super) domain: &'a Domain,
-    pub(super) field: &'a dyn MetricField,
+struct InPlane<'a> {
+    domain: &'a Domain,
+    field: &'a dyn MetricField,
     /// Whether parts need all of it.
-    pub(super) is_whole: bool,
+    is_whole: bool,
 }
 
 impl Divisible for InPlane<'_> {
@@ -35,8 +73,8 @@ impl Divisible for InPlane<'_> {
         self.domain.pslg().segments.iter().try_for_each(|segment| refuse_label(segment.label))?;
         // The limit is that of each part.
         let (options, watch) = (MeshOptions { memory_limit: u64::MAX, ..options.clone() }, Stopwatch::new(progress));
-        let mut job = Job::new(field, &options, &watch);
-        let (plan, count, scale) = job.plan(self.domain)?;
+        let mut job = Job::new(&Case { domain: self.domain, field, aim: None, options: &options, progress }, &watch);
+        let (plan, count, scale) = job.plan()?;
         let vertices = count - plan.copies();
         let parts = number_of_parts(vertices, parts)?;
         let coarse = coarse_mesh(&plan.domain, field, parts, &options, progress)?;

@@ -2,8 +2,8 @@
 
 use crate::error::{Error, Result};
 use crate::lists::{distinct, in_order, marked};
+use crate::manifold::surface::CUT as LABEL;
 use crate::mesh::{Edges, Mesh};
-use crate::surface::CUT as LABEL;
 use std::collections::HashMap;
 
 /// The label of cuts.

@@ -3,22 +3,24 @@
 use super::bisect::{areas_of, counts, join_around, owners};
 use super::region::{CUT, refuse_label, submesh};
 use super::stitch::{Kept, position_of};
-use super::{COARSE, Divisible, Part, Partition, number_of_parts, with_count};
+use super::{COARSE, Divisible, Make, Part, Partition, in_parts, number_of_parts, with_count};
 use crate::elementary::Elementary;
 use crate::error::{Error, Result};
 use crate::geometry::{Point3, Tensor3};
 use crate::lists::{Rows, distinct, in_order};
+use crate::manifold::surface::Mark;
+use crate::manifold::surface::metric::SurfaceMetric;
+use crate::manifold::{Manifold, Place};
 use crate::mesh::{Mesh, Network};
 use crate::metric::{Expression, Norm};
 use crate::parallel::prelude::*;
 use crate::progress::Progress;
 use crate::quality::{Meetings, Validity, validity_on};
 use crate::recipe::on_surface::SurfacePlan;
+use crate::recipe::stopwatch::Stopwatch;
 use crate::recipe::surface_pass::{Setting, demand};
-use crate::recipe::{MeshOptions, Stopwatch, mesh_surface};
+use crate::recipe::{MeshOptions, Meshed, mesh_surface};
 use crate::sampling::{MetricArc, pieces};
-use crate::surface::metric::SurfaceMetric;
-use crate::surface::{Input, Mark, Place, Surface};
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
 use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
 
@@ -30,9 +32,9 @@ const AT_VERTEX: f64 = 1e-3;
 
 /// A surface, cut along its features, with its metric.
 #[derive(Clone, Copy)]
-pub(super) struct OnSurface<'a> {
-    pub(super) input: &'a Input,
-    pub(super) metric: &'a dyn SurfaceMetric,
+struct OnSurface<'a> {
+    input: &'a Manifold,
+    metric: &'a dyn SurfaceMetric,
 }
 
 /// The mesh of a part of a surface, which is given whole and cut along its features.
@@ -41,28 +43,44 @@ pub(super) struct OnSurface<'a> {
 /// As of [`mesh_surface`].
 pub fn mesh_surface_part(
     part: &Part,
-    whole: &Input,
+    whole: &Manifold,
     metric: &dyn SurfaceMetric,
     aim: Option<(&Expression, Norm)>,
     options: &MeshOptions,
     progress: &dyn Progress,
 ) -> Result<Mesh> {
-    let own = whole.part(&Surface::new(&part.domain)?)?;
-    let metric = OfWhole::new(&own.surface, whole, metric);
+    let own = whole.part(&part.domain)?;
+    let metric = OfWhole::new(&own, whole, metric);
     let options = MeshOptions { hausd: None, ..with_count(options, part.vertices) };
     Ok(mesh_surface(&own, &metric, aim, &options, progress)?.mesh)
 }
 
+/// [`mesh_in_parts`](super::mesh_in_parts) of a surface that was cut along its features ([`Manifold::cut`]), whose parts are made by [`mesh_surface_part`]. Cuts are
+/// along edges of its triangles. The number of vertices is met as nearly as parts meet theirs.
+///
+/// # Errors
+/// As of [`mesh_in_parts`](super::mesh_in_parts); [`Error::Unsupported`] of vertices off the surface (`fit`) and of distances to it (`hausd`), too.
+pub fn mesh_surface_in_parts(
+    input: &Manifold,
+    metric: &dyn SurfaceMetric,
+    parts: Option<usize>,
+    options: &MeshOptions,
+    make: Make,
+    progress: &dyn Progress,
+) -> Result<Meshed> {
+    in_parts(&OnSurface { input, metric }, parts, options, make, progress)
+}
+
 /// The metric of a surface as one of a part of it.
 struct OfWhole<'a> {
-    whole: &'a Input,
+    whole: &'a Manifold,
     metric: &'a dyn SurfaceMetric,
     /// Of the whole, what is closest to the middle of each triangle of the part.
     near: Vec<Place>,
 }
 
 impl<'a> OfWhole<'a> {
-    fn new(part: &Surface, whole: &'a Input, metric: &'a dyn SurfaceMetric) -> Self {
+    fn new(part: &Manifold, whole: &'a Manifold, metric: &'a dyn SurfaceMetric) -> Self {
         let faces: Vec<FaceId> = part.topology().faces().collect();
         let near = |&f: &FaceId| {
             let middle = part.place(f, [1.0 / 3.0; 3]);
@@ -165,14 +183,16 @@ impl<'a> Base<'a> {
     fn new(on: OnSurface<'a>) -> Result<Self> {
         let whole = with_features(on.input);
         whole.edge_labels.iter().try_for_each(|&label| refuse_label(label))?;
-        let surface = Surface::new(&whole)?;
+        let surface = Manifold::of(&whole)?;
         let mut topology = surface.topology().clone();
         let faces: Vec<FaceId> = topology.faces().collect();
         for &f in &faces {
             topology.set_region(f, f.0.cast_signed());
         }
-        let homes: Vec<FaceId> = on.input.surface.topology().faces().collect();
-        let marks = (0..whole.edges.len() as u32).map(|i| surface.mark(crate::triangulation::Constraint(i))).collect();
+        let homes: Vec<FaceId> = on.input.topology().faces().collect();
+        let marks = (0..whole.edges.len() as u32)
+            .map(|i| surface.surface().mark(crate::triangulation::Constraint(i)))
+            .collect();
         let sides = homes.into_iter().map(|home| Side { home, owner: 0 }).collect();
         Ok(Self { on, topology, positions: surface.positions().to_vec(), whole, marks, sides })
     }
@@ -192,7 +212,7 @@ impl<'a> Base<'a> {
 
     /// The metric at a point of a triangle.
     fn tensor(&self, f: FaceId, p: Point3) -> Tensor3 {
-        self.on.metric.at(&self.on.input.surface.closest_on(self.side(f).home, p))
+        self.on.metric.at(&self.on.input.closest_on(self.side(f).home, p))
     }
 
     /// The longest edges are halved, so many in all; those that are required stay whole.
@@ -213,8 +233,8 @@ impl<'a> Base<'a> {
             }
             let middle = self.position(a).lerp(self.position(b), 0.5);
             let on = |h: HalfEdge| {
-                let place = self.on.input.surface.closest_on(self.side(h.face()).home, middle);
-                if self.on.input.implicit.is_none() {
+                let place = self.on.input.closest_on(self.side(h.face()).home, middle);
+                if self.on.input.equation().is_none() {
                     Some(middle)
                 } else {
                     Some(self.on.input.lift(&place, middle)?.position)
@@ -361,7 +381,7 @@ impl<'a> Base<'a> {
     fn kept(&self) -> Kept {
         let places = |list: &[VertexId]| list.iter().map(|&v| position_of(self.position(v).to_array())).collect();
         let required: Vec<VertexId> = self.whole.required_points.iter().map(|&v| VertexId(v)).collect();
-        Kept { corners: places(&self.on.input.seams.features.corners), points: places(&required), ..Kept::default() }
+        Kept { corners: places(&self.on.input.features().corners), points: places(&required), ..Kept::default() }
     }
 
     /// The jobs of the parts.
@@ -393,7 +413,7 @@ impl<'a> Base<'a> {
 
     /// As a mesh with features; stations are corners.
     fn mesh(&self, stations: &BTreeSet<VertexId>) -> Mesh {
-        let homes = self.on.input.surface.topology();
+        let homes = self.on.input.topology();
         let fixed: Vec<(HalfEdge, Mark)> = self.topology.edges().filter_map(|h| Some((h, self.mark(h)?))).collect();
         let marked = |is: fn(&Mark) -> bool| (0..).zip(&fixed).filter(|(_, (_, m))| is(m)).map(|(i, _)| i).collect();
         let mut point_labels = self.whole.point_labels.clone();
@@ -416,9 +436,9 @@ impl<'a> Base<'a> {
 }
 
 /// The triangles of a surface before it was cut, with its features as listed edges and what has to be kept as corners.
-fn with_features(input: &Input) -> Mesh {
+fn with_features(input: &Manifold) -> Mesh {
     let mut mesh = input.whole_mesh();
-    let features = &input.seams.features;
+    let features = input.features();
     for curve in &features.curves {
         for edge in &curve.edges {
             let i = mesh.edges.len() as u32;
@@ -429,9 +449,9 @@ fn with_features(input: &Input) -> Mesh {
         }
     }
     mesh.corners = features.stops.iter().map(|v| v.0).collect();
-    mesh.required_points = input.surface.required_points().iter().map(|v| input.seams.original(*v).0).collect();
+    mesh.required_points = input.required_points().iter().map(|v| input.seams().original(*v).0).collect();
     mesh.required_points = distinct(mesh.required_points);
-    let rows: BTreeMap<FaceId, u32> = input.surface.topology().faces().zip(0..).collect();
-    mesh.required_triangles = input.surface.required_triangles().iter().filter_map(|f| rows.get(f).copied()).collect();
+    let rows: BTreeMap<FaceId, u32> = input.topology().faces().zip(0..).collect();
+    mesh.required_triangles = input.required_triangles().iter().filter_map(|f| rows.get(f).copied()).collect();
     mesh
 }

@@ -1,10 +1,12 @@
 use super::*;
 use crate::geometry::{Point3, Tensor3};
+use crate::manifold::Manifold;
+use crate::manifold::surface::metric::Constant;
+use crate::manifold::surface::metric::SurfaceMetric;
+use crate::manifold::surface::{FeatureOptions, sphere, torus};
 use crate::progress::Silent;
 use crate::quality::{Meetings, validity_on};
 use crate::recipe::{Effort, mesh_surface};
-use crate::surface::metric::Constant;
-use crate::surface::{FeatureOptions, Surface, sphere, torus};
 
 fn options(vertices: usize) -> MeshOptions {
     MeshOptions { vertices: Some(vertices), effort: Effort::Fast, ..MeshOptions::default() }
@@ -12,7 +14,7 @@ fn options(vertices: usize) -> MeshOptions {
 
 /// The mesh in parts, and how many parts each round had.
 fn made(
-    input: &Input,
+    input: &Manifold,
     metric: &dyn SurfaceMetric,
     parts: usize,
     options: &MeshOptions,
@@ -43,7 +45,7 @@ fn closed_surfaces_come_together_again() {
     let turning = |p: Point3| Tensor3::IDENTITY * (1.0 + p.z * p.z);
     for surface in [sphere(1.0, 0.15).unwrap(), torus(2.0, 0.7, 0.3).unwrap()] {
         let euler = surface.euler_characteristic();
-        let input = Input::new(surface, None).cut(&FeatureOptions::default()).unwrap();
+        let input = Manifold::new(surface, None).cut(&FeatureOptions::default()).unwrap();
         for parts in [2, 3] {
             let (meshed, rounds) = made(&input, &turning, parts, &options(3600)).unwrap();
             let found = validity_on(&meshed.mesh, &Meetings::of(input.whole_mesh()));
@@ -66,7 +68,7 @@ fn features_of_a_cube_stay() {
     let triangle_labels = (0..12).map(|t| t / 2 + 1).collect();
     let edges = vec![[0, 1]];
     let cube = Mesh { points, triangles, triangle_labels, edges, edge_labels: vec![5], ..Mesh::default() };
-    let input = Input::new(Surface::new(&cube).unwrap(), None).cut(&FeatureOptions::default()).unwrap();
+    let input = Manifold::of(&cube).unwrap().cut(&FeatureOptions::default()).unwrap();
     let metric = Constant(Tensor3::IDENTITY);
     let (meshed, _) = made(&input, &metric, 2, &options(2400)).unwrap();
     let mesh = &meshed.mesh;
@@ -89,7 +91,7 @@ fn features_of_a_cube_stay() {
 
 #[test]
 fn what_is_of_the_whole_is_refused_by_name() {
-    let input = Input::new(sphere(1.0, 0.3).unwrap(), None);
+    let input = Manifold::new(sphere(1.0, 0.3).unwrap(), None);
     let message =
         |options: &MeshOptions| made(&input, &Constant(Tensor3::IDENTITY), 2, options).unwrap_err().to_string();
     let of = options(3000);

@@ -1,6 +1,8 @@
 use super::*;
-use crate::domain::{Pslg, from_mesh};
 use crate::geometry::{Point, Tensor};
+use crate::manifold::domain::Domain;
+use crate::manifold::domain::{Pslg, from_mesh};
+use crate::metric::{MetricField, Sampled};
 use crate::metric::{Shock, Uniform};
 use crate::progress::Silent;
 use crate::quality::{metric_quality, validity};

@@ -2,9 +2,9 @@
 
 use super::work::{Vertex, Work, leaning, quality};
 use super::{Adapted, TOO_LONG, UPRIGHT};
+use crate::manifold::surface::metric::SurfaceMetric;
+use crate::manifold::{Manifold, Place};
 use crate::parallel::prelude::*;
-use crate::surface::metric::SurfaceMetric;
-use crate::surface::{Input, Place, Surface};
 use crate::triangulation::{Corner, FaceId, HalfEdge, Triangulation, VertexId};
 use std::collections::BTreeMap;
 
@@ -25,7 +25,7 @@ pub(crate) struct Halving<'a> {
 }
 
 /// The triangulation with vertices in the middles of edges that are too long, and at all places that are given.
-pub(crate) fn halved(input: &Input, metric: &dyn SurfaceMetric, halving: &Halving) -> Adapted {
+pub(crate) fn halved(input: &Manifold, metric: &dyn SurfaceMetric, halving: &Halving) -> Adapted {
     let Halving { places, topology, given, are_there, factor, count } = *halving;
     let mut work = Work::of(input, metric, factor, topology.clone(), places.to_vec());
     let there = (0..).zip(are_there).filter(|(_, is_there)| **is_there).map(|(i, _)| i);
@@ -72,7 +72,7 @@ impl Work<'_> {
 
     /// Makes all given places vertices: each is on the edge that goes on from the last one before it on its border.
     fn cut_border(&mut self, given: &[Place], are_there: &[bool]) {
-        let stations = Stations::new(&self.input.surface);
+        let stations = Stations::new(self.input);
         let mut order: Vec<(usize, f64, usize)> =
             (0..).zip(given).filter_map(|(i, place)| stations.of(place).map(|(curve, at)| (curve, at, i))).collect();
         order.sort_by(|x, y| x.0.cmp(&y.0).then(x.1.total_cmp(&y.1)).then(x.2.cmp(&y.2)));
@@ -95,13 +95,13 @@ impl Work<'_> {
 
 /// Where places are on the border of a surface.
 struct Stations<'a> {
-    surface: &'a Surface,
+    surface: &'a Manifold,
     /// By edge, the closed curve of the border that it is of, and how many edges of this are before it.
     edges: BTreeMap<HalfEdge, (usize, f64)>,
 }
 
 impl<'a> Stations<'a> {
-    fn new(surface: &'a Surface) -> Self {
+    fn new(surface: &'a Manifold) -> Self {
         let (t, mut edges) = (surface.topology(), BTreeMap::new());
         for (curve, first) in t.borders().enumerate() {
             let (mut next, mut before) = (Some(first), 0.0);
@@ -132,17 +132,17 @@ mod tests {
     use super::super::{Holding, Wanted, adapted};
     use super::*;
     use crate::geometry::Tensor3;
-    use crate::surface::FeatureOptions;
-    use crate::surface::metric::Constant;
+    use crate::manifold::surface::FeatureOptions;
+    use crate::manifold::surface::metric::Constant;
     use crate::test_cases::cube;
 
     /// On a cube that is cut along its edges, every other place on these is given at first.
     #[test]
     fn finer_triangulations_have_all_places_and_next_to_all_edges_halved() {
-        let input = Input::new(Surface::new(&cube(6, 0.0)).unwrap(), None).cut(&FeatureOptions::default()).unwrap();
-        let t = input.surface.topology();
+        let input = Manifold::of(&cube(6, 0.0)).unwrap().cut(&FeatureOptions::default()).unwrap();
+        let t = input.topology();
         let given: Vec<Place> =
-            t.vertices().filter(|&v| t.is_border_vertex(v)).filter_map(|v| input.surface.place_of(v)).collect();
+            t.vertices().filter(|&v| t.is_border_vertex(v)).filter_map(|v| input.place_of(v)).collect();
         // Corners and every other one between them are there already.
         let steps = |place: &Place| place.position.to_array().map(|x| (6.0 * x).round() as i64);
         let are_there: Vec<bool> = given.iter().map(|place| steps(place).iter().all(|step| step % 2 == 0)).collect();

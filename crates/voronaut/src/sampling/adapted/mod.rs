@@ -9,8 +9,9 @@ mod refine;
 mod work;
 
 use crate::geometry::{Aabb3, Bounds, Point3, widened};
-use crate::surface::metric::SurfaceMetric;
-use crate::surface::{Input, Place, closest_weights};
+use crate::manifold::surface::closest_weights;
+use crate::manifold::surface::metric::SurfaceMetric;
+use crate::manifold::{Manifold, Place};
 use crate::triangulation::{Triangulation, VertexId};
 use work::Work;
 
@@ -78,7 +79,7 @@ pub(crate) struct Adapted {
 }
 
 /// Adapts the triangles of a surface. `None` where two of the given places are one vertex.
-pub(crate) fn adapted(input: &Input, metric: &dyn SurfaceMetric, wanted: &Wanted) -> Option<Adapted> {
+pub(crate) fn adapted(input: &Manifold, metric: &dyn SurfaceMetric, wanted: &Wanted) -> Option<Adapted> {
     let mut work = Work::new(input, metric, wanted)?;
     if work.keeps_edges {
         work.split_long(wanted.count);
@@ -86,7 +87,7 @@ pub(crate) fn adapted(input: &Input, metric: &dyn SurfaceMetric, wanted: &Wanted
     }
     // Large triangles turn over less easily; where the border cannot be had of them, smaller ones may let it go.
     work.contract_border();
-    work.split_long(MOST * (wanted.count + input.surface.positions().len()));
+    work.split_long(MOST * (wanted.count + input.positions().len()));
     work.contract_border();
     if work.stuck().is_empty() {
         work.contract_to(wanted.count);
@@ -97,7 +98,7 @@ pub(crate) fn adapted(input: &Input, metric: &dyn SurfaceMetric, wanted: &Wanted
 /// What is left of a triangulation of the surface when vertices are contracted until there are so many: onto those that are `kept`, as far as
 /// triangles stand upright. The first of these, so many, stay and come first; of the border no others are left.
 pub(crate) fn contracted(
-    input: &Input,
+    input: &Manifold,
     metric: &dyn SurfaceMetric,
     factor: f64,
     (topology, places): (Triangulation, Vec<Place>),
@@ -121,7 +122,7 @@ pub(crate) fn contracted(
 /// Exchanges vertices of a triangulation of the surface whose first `staying` places stay: edges that are too long are split, and as
 /// many vertices contracted where edges are shortest.
 pub(crate) fn exchanged(
-    input: &Input,
+    input: &Manifold,
     metric: &dyn SurfaceMetric,
     factor: f64,
     places: &[Place],

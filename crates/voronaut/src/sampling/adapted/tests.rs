@@ -1,15 +1,16 @@
 use super::work::leaning;
 use super::*;
 use crate::geometry::Tensor3;
+use crate::manifold::Manifold;
+use crate::manifold::surface::Surface;
+use crate::manifold::surface::metric::Constant;
 use crate::mesh::Mesh;
-use crate::surface::metric::Constant;
-use crate::surface::{Input, Surface};
 
 fn metric(edge: f64) -> Constant {
     Constant(Tensor3::IDENTITY * edge.powi(-2))
 }
 
-fn of(input: &Input, edge: f64, count: usize, held: &[Held]) -> Adapted {
+fn of(input: &Manifold, edge: f64, count: usize, held: &[Held]) -> Adapted {
     adapted(input, &metric(edge), &Wanted { given: &[], factor: 1.0, count, held: Holding::Near(held) }).unwrap()
 }
 
@@ -25,10 +26,10 @@ fn corners(places: &[Place], topology: &Triangulation) -> Vec<[[u64; 3]; 3]> {
 #[test]
 fn the_number_is_met_and_triangles_stand_upright() {
     for (spec, edge, count) in [("sphere:1", 0.4, 100), ("torus:2,0.7", 0.3, 400), ("sphere:1", 0.05, 6000)] {
-        let input = Input::shape(spec, Some(0.15)).unwrap();
+        let input = Manifold::shape(spec, Some(0.15)).unwrap();
         let found = of(&input, edge, count, &[]);
         assert_eq!(found.places.len(), count, "{spec}");
-        assert_eq!(found.topology.euler_characteristic(), input.surface.euler_characteristic());
+        assert_eq!(found.topology.euler_characteristic(), input.surface().euler_characteristic());
         found.topology.check().unwrap();
         let metric = metric(edge);
         let work = Work::of(&input, &metric, 1.0, found.topology, found.places);
@@ -39,25 +40,25 @@ fn the_number_is_met_and_triangles_stand_upright() {
 
 #[test]
 fn where_all_is_held_it_is_the_surface() {
-    let input = Input::shape("torus:2,0.7", Some(0.4)).unwrap();
+    let input = Manifold::shape("torus:2,0.7", Some(0.4)).unwrap();
     let found = of(&input, 5.0, 10, &[Held { corners: [Point3::default(); 3], within: 10.0 }]);
-    let all = input.surface.topology();
-    let places: Vec<Place> = all.vertices().map(|v| input.surface.place_of(v).unwrap()).collect();
+    let all = input.topology();
+    let places: Vec<Place> = all.vertices().map(|v| input.place_of(v).unwrap()).collect();
     assert_eq!(corners(&found.places, &found.topology), corners(&places, all));
     assert_eq!(found.staying, places.len());
 }
 
 #[test]
 fn points_of_no_triangle_do_not_count() {
-    let mesh = Input::shape("sphere:1", Some(0.3)).unwrap().surface.to_mesh();
+    let mesh = Manifold::shape("sphere:1", Some(0.3)).unwrap().whole_mesh();
     let points = mesh.points.iter().copied().chain((0..200).map(|i| [f64::from(i), 9.0, 9.0])).collect();
-    let input = Input::new(Surface::new(&Mesh { points, ..mesh }).unwrap(), None);
+    let input = Manifold::new(Surface::new(&Mesh { points, ..mesh }).unwrap(), None);
     assert_eq!(of(&input, 0.5, 60, &[]).places.len(), 60);
 }
 
 #[test]
 fn exchange_keeps_the_number_and_what_stays() {
-    let input = Input::shape("sphere:1", Some(0.3)).unwrap();
+    let input = Manifold::shape("sphere:1", Some(0.3)).unwrap();
     let start = of(&input, 0.5, 60, &[]);
     // Edges are far too long in this metric.
     let found = exchanged(&input, &metric(0.1), 1.0, &start.places, &start.topology, 5);

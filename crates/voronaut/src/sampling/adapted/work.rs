@@ -2,15 +2,15 @@
 
 use super::{Adapted, Holding, Wanted};
 use crate::geometry::{BoxTree, Point3, Tensor3, Vector3};
+use crate::manifold::surface::metric::SurfaceMetric;
+use crate::manifold::{Manifold, Place};
 use crate::parallel::prelude::*;
-use crate::surface::metric::SurfaceMetric;
-use crate::surface::{Input, Place};
 use crate::triangulation::{HalfEdge, Triangulation, VertexId};
 use std::collections::BTreeMap;
 
 /// A triangulation in the making.
 pub(super) struct Work<'a> {
-    pub(super) input: &'a Input,
+    pub(super) input: &'a Manifold,
     metric: &'a dyn SurfaceMetric,
     /// The root of the factor on the metric.
     root: f64,
@@ -42,11 +42,11 @@ impl Vertex {
 }
 
 impl<'a> Work<'a> {
-    pub(super) fn new(input: &'a Input, metric: &'a dyn SurfaceMetric, wanted: &Wanted) -> Option<Self> {
-        let topology = input.surface.topology().clone();
-        let nowhere = input.surface.place(topology.faces().next()?, [1.0, 0.0, 0.0]);
+    pub(super) fn new(input: &'a Manifold, metric: &'a dyn SurfaceMetric, wanted: &Wanted) -> Option<Self> {
+        let topology = input.topology().clone();
+        let nowhere = input.place(topology.faces().next()?, [1.0, 0.0, 0.0]);
         let slots = (0..topology.vertex_slots() as u32).map(VertexId);
-        let places: Vec<Place> = slots.map(|v| input.surface.place_of(v).unwrap_or(nowhere)).collect();
+        let places: Vec<Place> = slots.map(|v| input.place_of(v).unwrap_or(nowhere)).collect();
         let mut work = Self::of(input, metric, wanted.factor, topology, places);
         work.keeps_edges = matches!(wanted.held, Holding::All);
         let is_near: Box<dyn Fn(Point3) -> bool + Sync> = match wanted.held {
@@ -65,7 +65,7 @@ impl<'a> Work<'a> {
     }
 
     pub(super) fn of(
-        input: &'a Input,
+        input: &'a Manifold,
         metric: &'a dyn SurfaceMetric,
         factor: f64,
         topology: Triangulation,

@@ -13,7 +13,7 @@ fn protected_seeds_have_the_same_nerve_on_every_canvas() {
     let (truth, is_inside) = truth(&WAVES, &seeds, 2.0);
     assert!(truth.len() > 200, "{}", truth.len());
     for (kind, per_seed) in [(Kind::Intrinsic, 30), (Kind::Isotropic, 300), (Kind::StarSet, 30)] {
-        let canvas = Canvas::new(kind, &domain, &metric, per_seed * seeds.len()).unwrap();
+        let canvas = Canvas::new(kind, domain.planar(), &metric, per_seed * seeds.len()).unwrap();
         let before = canvas.vertex_count();
         let resolved = resolve(canvas, &metric, &seeds, RESOLVE_ROUNDS).unwrap();
         let diagram = Diagram::new(&resolved.canvas, &metric, &seeds).unwrap();

@@ -1,8 +1,8 @@
 //! What several of the tests need.
 
 use crate::canvas::Canvas;
-use crate::domain::{Domain, rect};
 use crate::geometry::Point;
+use crate::manifold::domain::{Domain, rect};
 use crate::triangulation::VertexId;
 
 /// A quasi-random sequence in the unit square (Halton, bases 2 and 3, a little shaken).

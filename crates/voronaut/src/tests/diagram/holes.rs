@@ -3,8 +3,8 @@
 use super::common::{halton, vertices};
 use crate::canvas::Canvas;
 use crate::diagram::Diagram;
-use crate::domain::{Domain, Filling, Pslg, Segment, Side, rect};
 use crate::geometry::{Point, Tensor};
+use crate::manifold::domain::{Domain, Filling, Pslg, Segment, Side, rect};
 use crate::metric::Uniform;
 use crate::planar::delaunay;
 use std::collections::{BTreeMap, BTreeSet};
@@ -52,7 +52,7 @@ fn distances_go_around_holes_and_through_the_passage() {
             }
         }
         let field = Uniform(tensor);
-        let canvas = Canvas::intrinsic(&domain, &field, 20_000).unwrap();
+        let canvas = Canvas::intrinsic(domain.planar(), &field, 20_000).unwrap();
         let diagram = Diagram::new(&canvas, &field, &[from]).unwrap();
         let mut behind = 0;
         for v in vertices(&canvas).step_by(23) {
@@ -69,7 +69,7 @@ fn distances_go_around_holes_and_through_the_passage() {
 #[test]
 fn seeds_are_found_behind_holes() {
     let (domain, holes) = passage();
-    let canvas = Canvas::intrinsic(&domain, &Uniform::default(), 3000).unwrap();
+    let canvas = Canvas::intrinsic(domain.planar(), &Uniform::default(), 3000).unwrap();
     for (x, y) in (1..500).map(halton) {
         let p = Point::new(4.2 * x - 0.1, 2.2 * y - 0.1);
         let inside = p.x >= 0.0 && p.x <= 4.0 && p.y >= 0.0 && p.y <= 2.0;
@@ -184,7 +184,7 @@ fn duals_go_around_holes_and_through_the_passage() {
     for tensor in [Tensor::IDENTITY, Tensor::new(1.0, 0.5, 4.0)] {
         let (seen, possible) = touching(&Sight::new(tensor, &holes, &seeds));
         let field = Uniform(tensor);
-        let canvas = Canvas::intrinsic(&domain, &field, 100 * seeds.len()).unwrap();
+        let canvas = Canvas::intrinsic(domain.planar(), &field, 100 * seeds.len()).unwrap();
         let nerve = Diagram::new(&canvas, &field, &seeds).unwrap().sharp_nerve();
         let found: BTreeSet<[u32; 2]> = nerve.edges.iter().map(|e| e.colours).collect();
         let missing: Vec<_> = seen.iter().filter(|&(pair, &edges)| edges > 3 && !found.contains(pair)).collect();

@@ -7,9 +7,9 @@ mod updates;
 
 use crate::canvas::Canvas;
 use crate::diagram::{Diagram, resolve};
-use crate::domain::{Domain, rect};
 use crate::geodesic::{Geodesic, Marching, Sources, Wave};
 use crate::geometry::{Orientation, Point, Tensor, Vector, orientation};
+use crate::manifold::domain::{Domain, rect};
 use crate::metric::{MetricField, Shock, Uniform};
 use crate::planar::delaunay;
 use crate::triangulation::VertexId;
@@ -88,7 +88,7 @@ fn truth(flat: &Flat, seeds: &[Point], half: f64) -> (BTreeSet<[u32; 3]>, impl F
 fn uniform_metrics_give_affine_voronoi_cells() {
     let domain = square(2.0);
     let seeds = spaced(2.0, 3000, 0.38, &AFFINE.map);
-    let canvas = Canvas::intrinsic(&domain, &AFFINE.metric, 87 * seeds.len()).unwrap();
+    let canvas = Canvas::intrinsic(domain.planar(), &AFFINE.metric, 87 * seeds.len()).unwrap();
     let diagram = Diagram::new(&canvas, &AFFINE.metric, &seeds).unwrap();
     assert!(diagram.orphans().is_empty());
     let size = longest_edge(&canvas);
@@ -114,7 +114,7 @@ fn the_nerve_of_a_uniform_metric_is_exactly_delaunay() {
     let (truth, is_inside) = truth(&AFFINE, &seeds, 2.0);
     assert!(seeds.len() > 150 && truth.len() > 200, "{} {}", seeds.len(), truth.len());
     for per_seed in [15, 60] {
-        let canvas = Canvas::intrinsic(&domain, &AFFINE.metric, per_seed * seeds.len()).unwrap();
+        let canvas = Canvas::intrinsic(domain.planar(), &AFFINE.metric, per_seed * seeds.len()).unwrap();
         let diagram = Diagram::new(&canvas, &AFFINE.metric, &seeds).unwrap();
         let nerve = diagram.sharp_nerve();
         let found: BTreeSet<[u32; 3]> = nerve.triangles.iter().map(|t| sorted(t.colours)).collect();
@@ -133,7 +133,7 @@ fn the_nerve_of_a_turning_metric_converges_to_delaunay() {
     let seeds = spaced(2.0, 12_000, 0.045, &WAVES.map);
     let (truth, is_inside) = truth(&WAVES, &seeds, 2.0);
     let wrong = |per_seed: usize| {
-        let canvas = Canvas::intrinsic(&domain, &WAVES.metric, per_seed * seeds.len()).unwrap();
+        let canvas = Canvas::intrinsic(domain.planar(), &WAVES.metric, per_seed * seeds.len()).unwrap();
         let nerve = Diagram::new(&canvas, &WAVES.metric, &seeds).unwrap().sharp_nerve();
         let found: BTreeSet<[u32; 3]> = nerve.triangles.iter().map(|t| sorted(t.colours)).collect();
         let extra = found.iter().filter(|&&t| is_inside(t) && !truth.contains(&t)).count();
@@ -170,7 +170,7 @@ fn distances_converge_in_flat_space() {
     };
     for (wave, best, order) in [(Wave::Circular, 5e-4, 0.9), (Wave::Plane, 1e-2, 0.3)] {
         let errors = [1000, 4000, 16_000].map(|n| {
-            let canvas = Canvas::intrinsic(&domain, &WAVES.metric, n).unwrap();
+            let canvas = Canvas::intrinsic(domain.planar(), &WAVES.metric, n).unwrap();
             error(&canvas, &WAVES.metric, wave, from, &exact)
         });
         println!("{wave:?}: {errors:?}");
@@ -190,7 +190,7 @@ fn distances_converge_in_the_half_plane() {
     };
     for (wave, best, order) in [(Wave::Circular, 5e-4, 0.9), (Wave::Plane, 1.5e-2, 0.3)] {
         let errors = [1000, 4000, 16_000].map(|n| {
-            let canvas = Canvas::intrinsic(&domain, &half_plane, n).unwrap();
+            let canvas = Canvas::intrinsic(domain.planar(), &half_plane, n).unwrap();
             error(&canvas, &half_plane, wave, from, &exact)
         });
         println!("{wave:?}: {errors:?}");
@@ -204,7 +204,7 @@ fn threads_do_not_change_a_bit() {
     let with = |threads| {
         crate::test_cases::on_threads(threads, || {
             let field = Shock::default();
-            let canvas = Canvas::intrinsic(&domain, &field, 5000).unwrap();
+            let canvas = Canvas::intrinsic(domain.planar(), &field, 5000).unwrap();
             let seeds: Vec<Point> =
                 (1..300).map(|i| Point::new(4.0 * halton(i).0 - 2.0, 4.0 * halton(i).1 - 2.0)).collect();
             let diagram = Diagram::new(&canvas, &field, &seeds).unwrap();
@@ -222,7 +222,7 @@ fn wild_metrics_and_canvases_of_a_few_vertices_are_survived() {
     let spike = |p: Point| Tensor::isotropic(1e-6 + p.x.hypot(p.y));
     for field in [&jump as &dyn MetricField, &spike] {
         for n in [0, 5, 50, 3000] {
-            let canvas = Canvas::intrinsic(&domain, field, n).unwrap();
+            let canvas = Canvas::intrinsic(domain.planar(), field, n).unwrap();
             canvas.topology().check().unwrap();
             canvas.embedded().topology.check().unwrap();
             assert!(canvas.embedded().is_embedded());
@@ -234,13 +234,13 @@ fn wild_metrics_and_canvases_of_a_few_vertices_are_survived() {
         }
     }
     let nan = |p: Point| Tensor::new(1.0, 0.0, 1.0 - p.x - p.y);
-    assert!(Canvas::intrinsic(&domain, &nan, 100).is_err());
+    assert!(Canvas::intrinsic(domain.planar(), &nan, 100).is_err());
 }
 
 #[test]
 fn solvers_share_one_interface() {
     let domain = square(1.0);
-    let canvas = Canvas::intrinsic(&domain, &Uniform::default(), 400).unwrap();
+    let canvas = Canvas::intrinsic(domain.planar(), &Uniform::default(), 400).unwrap();
     let mut sources = Sources::new(canvas.vertex_count());
     sources.add(VertexId(3), 0.5, 8);
     let solver: &dyn Geodesic = &Marching { canvas: canvas.topology(), wave: Wave::Plane };
@@ -276,7 +276,7 @@ fn a_coarse_canvas_is_refined_until_it_captures_the_nerve() {
             let found: BTreeSet<[u32; 3]> = nerve.triangles.iter().map(|t| sorted(t.colours)).collect();
             truth.difference(&found).count() + found.iter().filter(|&&t| is_inside(t) && !truth.contains(&t)).count()
         };
-        let coarse = Canvas::intrinsic(&domain, &AFFINE.metric, 10 * seeds.len()).unwrap();
+        let coarse = Canvas::intrinsic(domain.planar(), &AFFINE.metric, 10 * seeds.len()).unwrap();
         let (before, vertices) = (wrong(&coarse), coarse.vertex_count());
         let resolved = resolve(coarse, &AFFINE.metric, &seeds, 20).unwrap();
         let (after, rounds) = (wrong(&resolved.canvas), resolved.rounds);
@@ -292,7 +292,7 @@ fn a_coarse_canvas_is_refined_until_it_captures_the_nerve() {
 fn refinement_around_vertices_keeps_the_canvas() {
     let domain = square(2.0);
     let field = Shock::default();
-    let canvas = Canvas::intrinsic(&domain, &field, 2000).unwrap();
+    let canvas = Canvas::intrinsic(domain.planar(), &field, 2000).unwrap();
     let around: Vec<VertexId> = vertices(&canvas).step_by(97).collect();
     let mut refined = canvas.refined(&field, &around).unwrap();
     for _ in 0..6 {

@@ -3,9 +3,9 @@
 use super::common::{halton, square, vertices};
 use crate::canvas::Canvas;
 use crate::diagram::{Care, Diagram};
-use crate::domain::Domain;
 use crate::geodesic::Method;
 use crate::geometry::{Point, Tensor};
+use crate::manifold::domain::Domain;
 use crate::metric::{MetricField, Shock, Swirl, Uniform};
 use crate::progress::Silent;
 use crate::recipe::{MeshOptions, mesh};
@@ -29,7 +29,7 @@ fn assert_as_made_anew(diagram: &Diagram, field: &dyn MetricField) {
 fn local_changes_equal_recomputation_to_the_last_bit() {
     let domain = square(2.0);
     for field in [&Swirl::default() as &dyn MetricField, &Shock::default()] {
-        let canvas = Canvas::intrinsic(&domain, field, 20_000).unwrap();
+        let canvas = Canvas::intrinsic(domain.planar(), field, 20_000).unwrap();
         let point = |i: u32| {
             let (x, y) = halton(i);
             Point::new(4.0 * x - 2.0, 4.0 * y - 2.0)
@@ -60,7 +60,7 @@ fn local_changes_equal_recomputation_to_the_last_bit() {
 fn removing_all_seeds_leaves_nothing() {
     let domain = square(1.0);
     let field = Uniform::default();
-    let canvas = Canvas::intrinsic(&domain, &field, 500).unwrap();
+    let canvas = Canvas::intrinsic(domain.planar(), &field, 500).unwrap();
     let mut diagram = Diagram::new(&canvas, &field, &[]).unwrap();
     assert!(vertices(&canvas).all(|v| diagram.colour(v).is_none() && diagram.distance(v).is_infinite()));
     let a = diagram.insert(Point::new(0.1, 0.2)).unwrap();
@@ -88,7 +88,7 @@ fn two_thousand_seeds_leave_no_orphans_and_change_as_if_made_anew() {
     for (field, half) in [(&Swirl::default() as &dyn MetricField, 2.0), (&Shock::default(), 1.0)] {
         let domain = square(half);
         let seeds = sized_seeds(&domain, field, 2000);
-        let canvas = Canvas::intrinsic(&domain, field, 25 * seeds.len()).unwrap();
+        let canvas = Canvas::intrinsic(domain.planar(), field, 25 * seeds.len()).unwrap();
         let mut diagram = Diagram::new(&canvas, field, &seeds).unwrap();
         assert_eq!((seeds.len(), diagram.orphans().len()), (2000, 0));
         let point = |i: u32| Point::new(half * (2.0 * halton(i).0 - 1.0), half * (2.0 * halton(i).1 - 1.0));
@@ -107,7 +107,7 @@ fn work_is_linear_in_the_canvas() {
     let domain = square(2.0);
     let field = Swirl::default();
     let per_vertex = [1000, 4000, 10_000].map(|seeds: u32| {
-        let canvas = Canvas::intrinsic(&domain, &field, 6 * seeds as usize).unwrap();
+        let canvas = Canvas::intrinsic(domain.planar(), &field, 6 * seeds as usize).unwrap();
         let at = |i| Point::new(4.0 * halton(i).0 - 2.0, 4.0 * halton(i).1 - 2.0);
         let points: Vec<Point> = (1..=seeds).map(at).collect();
         let diagram = Diagram::new(&canvas, &field, &points).unwrap();
@@ -131,7 +131,7 @@ fn removal_leaves_nothing_where_edges_lead_around_a_hole_and_back() {
             let k = aspect * aspect;
             Tensor::new(c * c + k * s * s, c * s * (1.0 - k), s * s + k * c * c)
         };
-        let canvas = Canvas::intrinsic(&domain, &field, 12 + (i % 30) as usize).unwrap();
+        let canvas = Canvas::intrinsic(domain.planar(), &field, 12 + (i % 30) as usize).unwrap();
         let topology = canvas.topology();
         loops += topology.edges().filter(|&h| topology.origin(h) == topology.target(h)).count();
         let mut diagram = Diagram::new(&canvas, &field, &[Point::new(0.9, 0.9)]).unwrap();
@@ -154,7 +154,7 @@ fn a_seed_where_holes_touch_belongs_to_both_sides() {
         &[[2.0, 2.0], [2.5, 1.5], [3.0, 2.0], [2.5, 2.5]],
     ]);
     let field = Uniform::default();
-    let canvas = Canvas::intrinsic(&domain, &field, 4000).unwrap();
+    let canvas = Canvas::intrinsic(domain.planar(), &field, 4000).unwrap();
     let touching = Point::new(2.0, 2.0);
     let far = |diagram: &Diagram, p: Point| {
         vertices(&canvas)

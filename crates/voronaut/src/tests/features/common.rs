@@ -2,9 +2,9 @@
 //! library but its validity and its closest points.
 
 use crate::geometry::Point3;
+use crate::manifold::surface::{Nearest, Surface};
 use crate::mesh::Mesh;
 use crate::quality::validity;
-use crate::surface::{Nearest, Surface};
 use crate::tests::parts::Part;
 use crate::tests::parts::chains::{Chain, Features, beside, sides};
 use std::collections::{BTreeMap, BTreeSet};

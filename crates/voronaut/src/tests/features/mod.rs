@@ -4,17 +4,18 @@ mod common;
 mod mutations;
 mod required;
 
+use crate::manifold::Manifold;
+use crate::manifold::surface::metric::{Spec, field};
+use crate::manifold::surface::{FeatureOptions, Surface};
 use crate::metric::Bounds;
 use crate::progress::Silent;
 use crate::recipe::{MeshOptions, mesh_surface};
-use crate::surface::metric::{Spec, field};
-use crate::surface::{FeatureOptions, Input, Surface};
 use crate::tests::parts::Part;
 use common::faults;
 
 /// What is meshed: the part with its features. The only place where these tests say how that is done.
-fn input(part: &Part) -> Input {
-    Input::new(Surface::new(&part.mesh).unwrap(), None).cut(&FeatureOptions::default()).unwrap()
+fn input(part: &Part) -> Manifold {
+    Manifold::of(&part.mesh).unwrap().cut(&FeatureOptions::default()).unwrap()
 }
 
 /// How far mesh and part may be apart: each is as far from the smooth surface as a triangle of its longest edges, k h^2 / 6, with the
@@ -62,7 +63,7 @@ fn keeps_features(name: &str, metric: &str, counts: &[usize]) {
     for &count in counts {
         let options = MeshOptions { vertices: Some(count), ..MeshOptions::default() };
         let mesh = mesh_surface(&input, field.as_ref(), None, &options, &Silent).unwrap().mesh;
-        let found = faults(&part, &mesh, distance(&part, &input.surface, count, metric));
+        let found = faults(&part, &mesh, distance(&part, input.surface(), count, metric));
         println!("{name} {metric} {count}: {} vertices, {} faults", mesh.points.len(), found.len());
         assert!(found.is_empty(), "{name} {metric} {count}:\n{}", found[..found.len().min(8)].join("\n"));
         // Curves take the vertices they need.

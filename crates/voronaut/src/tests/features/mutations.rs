@@ -1,9 +1,9 @@
 //! The checker finds what is wrong, and nothing where nothing is; parts are what they are said to be.
 
 use super::common::faults;
+use crate::manifold::surface::Surface;
 use crate::mesh::Mesh;
 use crate::quality::validity;
-use crate::surface::Surface;
 use crate::tests::parts::{self, Part};
 
 /// The same surface with its features listed: what a mesher would hand back at best.

@@ -1,12 +1,13 @@
 //! What the user marks stays: vertices, edges and triangles that are required, and sizes given at the vertices of the file.
 
+use crate::manifold::Manifold;
+use crate::manifold::surface::FeatureOptions;
+use crate::manifold::surface::metric::{Sampled, Spec, field};
 use crate::mesh::{Mesh, Solution, SolutionValues};
 use crate::metric::Bounds;
 use crate::progress::Silent;
 use crate::quality::{check, surface_quality};
 use crate::recipe::{MeshOptions, mesh_surface};
-use crate::surface::metric::{Sampled, Spec, field};
-use crate::surface::{FeatureOptions, Input, Surface};
 use crate::tests::parts;
 use std::collections::BTreeSet;
 
@@ -14,8 +15,8 @@ fn cube() -> Mesh {
     parts::all().into_iter().find(|part| part.name == "cube").unwrap().mesh
 }
 
-fn cut(mesh: &Mesh) -> Input {
-    Input::new(Surface::new(mesh).unwrap(), None).cut(&FeatureOptions::default()).unwrap()
+fn cut(mesh: &Mesh) -> Manifold {
+    Manifold::of(mesh).unwrap().cut(&FeatureOptions::default()).unwrap()
 }
 
 fn bits(mesh: &Mesh, v: u32) -> [u64; 3] {
@@ -60,10 +61,10 @@ fn sizes_at_the_vertices_of_the_file_hold_on_all_sides_of_creases() {
     let sizes = mesh.points.iter().map(|p| 0.05 + 0.15 * p[0].max(p[1])).collect();
     let solution = Solution { dimension: 3, values: SolutionValues::Scalar(sizes) };
     let input = cut(&mesh);
-    let metric = Sampled::from_solution(&input.surface, &input.spread(&solution).unwrap()).unwrap();
+    let metric = Sampled::from_solution(input.surface(), &input.spread(&solution).unwrap()).unwrap();
     let made = mesh_surface(&input, &metric, None, &MeshOptions::default(), &Silent).unwrap().mesh;
     check(&made).unwrap();
-    let quality = surface_quality(&made, &input.surface, &metric).unwrap();
+    let quality = surface_quality(&made, &input, &metric).unwrap();
     println!("{} vertices, {:?}", made.points.len(), quality.metric_edge_length);
     assert!(quality.metric_edge_length.unit_fraction > 0.95, "{:?}", quality.metric_edge_length);
     let few = Solution { dimension: 3, values: SolutionValues::Scalar(vec![1.0; 3]) };

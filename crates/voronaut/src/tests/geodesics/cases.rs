@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 use voronaut::canvas::Canvas;
 use voronaut::diagram::Distances;
-use voronaut::domain::Domain;
 use voronaut::geometry::{Point, Tensor};
+use voronaut::manifold::domain::Domain;
 use voronaut::triangulation::VertexId;
 
 /// A metric on a domain, and its distances from a point.

@@ -3,12 +3,12 @@
 use crate::Result;
 use crate::canvas::{Canvas, Draped, Kind};
 use crate::diagram::{Distances, SurfaceDistances};
-use crate::domain::Domain;
 use crate::geodesic::Method;
 use crate::geometry::{Point, Point3, Tensor3, Vector3};
+use crate::manifold::Manifold;
+use crate::manifold::domain::Domain;
+use crate::manifold::surface::metric::SurfaceMetric;
 use crate::metric::MetricField;
-use crate::surface::Input;
-use crate::surface::metric::SurfaceMetric;
 use crate::tests::wavy::Wavy;
 use crate::triangulation::VertexId;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ use std::sync::Arc;
 #[derive(Clone)]
 enum Land {
     Plane(Arc<Domain>, Arc<dyn MetricField + Send + Sync>),
-    Surface(Arc<Input>, Arc<dyn SurfaceMetric + Send + Sync>),
+    Surface(Arc<Manifold>, Arc<dyn SurfaceMetric + Send + Sync>),
 }
 
 /// See the module; the first [`FROM`] places are sources, others are where paths start. In the plane z is 0.
@@ -54,7 +54,7 @@ pub(crate) fn planar(domain: Domain, field: impl MetricField + Send + 'static, p
     Ground { name: "plane", places, land: Land::Plane(Arc::new(domain), Arc::new(field)) }
 }
 
-fn on_surface(name: &'static str, input: Input, metric: Tensor3, places: Vec<Point3>) -> Ground {
+fn on_surface(name: &'static str, input: Manifold, metric: Tensor3, places: Vec<Point3>) -> Ground {
     let metric = move |_: Point3| metric;
     Ground { name, places, land: Land::Surface(Arc::new(input), Arc::new(metric)) }
 }
@@ -70,7 +70,7 @@ fn on_sphere() -> impl Iterator<Item = Point3> {
 
 /// The unit sphere with its own metric.
 pub(crate) fn sphere() -> Ground {
-    on_surface("sphere", Input::shape("sphere:1", Some(0.3)).unwrap(), Tensor3::IDENTITY, on_sphere().collect())
+    on_surface("sphere", Manifold::shape("sphere:1", Some(0.3)).unwrap(), Tensor3::IDENTITY, on_sphere().collect())
 }
 
 /// The point of the unit sphere that a point of the [`stretched_sphere`] is mapped to.
@@ -80,7 +80,7 @@ pub(crate) fn relaxed(p: Point3) -> Point3 {
 
 /// An ellipsoid that a linear map takes to the unit sphere, with the metric that makes distances those of the images.
 pub(crate) fn stretched_sphere() -> Ground {
-    let input = Input::shape("implicit:(x/4+0.2*y)^2+y^2+z^2-1;-5,-1.1,-1.1,5,1.1,1.1", Some(0.4)).unwrap();
+    let input = Manifold::shape("implicit:(x/4+0.2*y)^2+y^2+z^2-1;-5,-1.1,-1.1,5,1.1,1.1", Some(0.4)).unwrap();
     let metric = Tensor3 { xx: 1.0 / 16.0, xy: 0.05, yy: 1.04, ..Tensor3::IDENTITY };
     let stretched = |p: Point3| Point3::new(4.0 * (p.x - 0.2 * p.y), p.y, p.z);
     on_surface("stretched sphere", input, metric, on_sphere().map(stretched).collect())
@@ -109,7 +109,7 @@ pub(crate) fn surfaces() -> [Ground; 4] {
 struct Times<M>(M, f64);
 
 impl SurfaceMetric for Times<Arc<dyn SurfaceMetric + Send + Sync>> {
-    fn at(&self, place: &crate::surface::Place) -> Tensor3 {
+    fn at(&self, place: &crate::manifold::Place) -> Tensor3 {
         self.0.at(place) * self.1
     }
 }
@@ -140,7 +140,7 @@ impl Ground {
     pub(crate) fn board(&self, kind: Kind, vertices: usize) -> Board<'_> {
         match &self.land {
             Land::Plane(domain, field) => {
-                let canvas = Canvas::new(kind, domain, field.as_ref(), vertices).unwrap();
+                let canvas = Canvas::new(kind, domain.planar(), field.as_ref(), vertices).unwrap();
                 let places = self.places.iter().map(|p| Point::new(p.x, p.y)).collect();
                 Board::Plane(canvas, field.as_ref(), places)
             }

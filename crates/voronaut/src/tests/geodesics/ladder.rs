@@ -54,7 +54,8 @@ fn methods_converge_as_theory_says() {
     let wave = within(turning(10.0, 0.25), Point::new(-0.7, -0.45), Point::new(0.7, 0.45));
     let half_plane = within(half_plane(10.0), Point::new(-12.0, 0.7), Point::new(12.0, 2.2));
     for case in [uniform(), wave, half_plane] {
-        let canvases = [1000, 4000, 16_000].map(|n| Canvas::intrinsic(&case.domain(), &case.metric, n).unwrap());
+        let canvases =
+            [1000, 4000, 16_000].map(|n| Canvas::intrinsic(case.domain().planar(), &case.metric, n).unwrap());
         for method in Method::ALL {
             let found = canvases.each_ref().map(|canvas| errors(&case, canvas, method));
             let order = (found[0][1] / found[2][1]).log2() / 2.0;
@@ -75,7 +76,7 @@ fn methods_converge_as_theory_says() {
 fn marching_and_heat_are_accurate_at_any_anisotropy() {
     let mut faults = Vec::new();
     for case in [2.0, 40.0].into_iter().flat_map(|anisotropy| [turning(anisotropy, 0.5), half_plane(anisotropy)]) {
-        let canvases = [5000, 20_000].map(|n| Canvas::intrinsic(&case.domain(), &case.metric, n).unwrap());
+        let canvases = [5000, 20_000].map(|n| Canvas::intrinsic(case.domain().planar(), &case.metric, n).unwrap());
         let [march, heat] =
             [Method::March, Method::Heat].map(|method| canvases.each_ref().map(|canvas| errors(&case, canvas, method)));
         println!("{}: march {march:.5?}, heat {heat:.5?}", case.name);

@@ -8,12 +8,12 @@ mod surfaces;
 
 use crate::canvas::{Canvas, Draped, Kind};
 use crate::diagram::{self, Diagram, Distances, SurfaceDiagram, SurfaceDistances};
-use crate::domain::Domain;
 use crate::geodesic::Method;
 use crate::geometry::{Point, Point3, Tensor, Tensor3};
+use crate::manifold::Manifold;
+use crate::manifold::domain::Domain;
+use crate::manifold::surface::metric::Constant;
 use crate::metric::Swirl;
-use crate::surface::Input;
-use crate::surface::metric::Constant;
 use crate::test_cases::plate;
 use crate::triangulation::VertexId;
 use grounds::{FROM, Ground, great_circle, planar, points, relaxed, sphere, square, stretched_sphere};
@@ -169,10 +169,10 @@ fn changed_as_made_anew<'a, G: diagram::Ground<'a>>(
 #[test]
 fn diagrams_by_every_method_change_as_if_made_anew() {
     let (square, swirl) = (Domain::shape("rect:-2,-2,2,2").unwrap(), Swirl::default());
-    let (sphere, uniform) = (Input::shape("sphere:1", None).unwrap(), Constant(Tensor3::IDENTITY));
+    let (sphere, uniform) = (Manifold::shape("sphere:1", None).unwrap(), Constant(Tensor3::IDENTITY));
     let seed = |i: u32| Point::new((1.7 * f64::from(i)).sin() * 1.9, (2.3 * f64::from(i)).cos() * 1.9);
     for kind in Kind::ALL {
-        let flat = Canvas::new(kind, &square, &swirl, 700).unwrap();
+        let flat = Canvas::new(kind, square.planar(), &swirl, 700).unwrap();
         let (round, _) = Canvas::on_surface(kind, &sphere, &uniform, 700, &[]).unwrap();
         let vertex = |i: u32| VertexId(7919 * i % round.vertex_count() as u32);
         for method in Method::ALL.into_iter().filter(|method| method.drives_diagrams()) {
@@ -185,7 +185,7 @@ fn diagrams_by_every_method_change_as_if_made_anew() {
             changed_as_made_anew(|seeds| SurfaceDiagram::on_surface(&round, seeds, method).unwrap(), vertex, &name);
         }
     }
-    let canvas = Canvas::intrinsic(&square, &swirl, 1500).unwrap();
+    let canvas = Canvas::intrinsic(square.planar(), &swirl, 1500).unwrap();
     let (round, _) = Canvas::on_surface(Kind::Intrinsic, &sphere, &uniform, 1500, &[]).unwrap();
     for method in [Method::Lbr, Method::Heat] {
         let of_plane = Diagram::of_kind(diagram::Kind::Riemannian, &canvas, &swirl, &[seed(1)], method).err().unwrap();
@@ -200,14 +200,14 @@ fn diagrams_by_every_method_change_as_if_made_anew() {
 #[test]
 fn points_outside_the_domain_are_refused() {
     let (domain, swirl) = (Domain::shape("rect:-1,-1,1,1").unwrap(), Swirl::default());
-    let canvas = Canvas::intrinsic(&domain, &swirl, 300).unwrap();
+    let canvas = Canvas::intrinsic(domain.planar(), &swirl, 300).unwrap();
     for method in Method::ALL {
         let error = Distances::new(&canvas, &swirl, &[Point::new(3.0, 0.0)], method).err().unwrap();
         assert!(error.to_string().contains("outside the domain at seed 1 (3, 0)"), "{error}");
         let found = Distances::new(&canvas, &swirl, &[Point::new(0.3, 0.1)], method).unwrap();
         assert!(found.at(Point::new(3.0, 0.0)).is_none() && found.path(Point::new(3.0, 0.0)).is_err());
     }
-    let (sphere, uniform) = (Input::shape("sphere:1", None).unwrap(), Constant(Tensor3::IDENTITY));
+    let (sphere, uniform) = (Manifold::shape("sphere:1", None).unwrap(), Constant(Tensor3::IDENTITY));
     let (round, _): (Canvas<Draped>, _) = Canvas::on_surface(Kind::Intrinsic, &sphere, &uniform, 1500, &[]).unwrap();
     let nowhere = VertexId(round.vertex_count() as u32);
     for method in Method::ALL {

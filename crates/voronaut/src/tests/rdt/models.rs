@@ -2,8 +2,8 @@
 
 use crate::canvas::Canvas;
 use crate::diagram::Diagram;
-use crate::domain::{Domain, rect};
 use crate::geometry::{Point, Tensor, Vector};
+use crate::manifold::domain::{Domain, rect};
 use crate::metric::MetricField;
 use crate::planar::{Planar, delaunay};
 use crate::rdt::{Edge, Rdt, Start, Trust};
@@ -146,7 +146,7 @@ impl Outcome {
 /// Random seeds, triangulated from the sharp nerve on a canvas, must come out right.
 pub(crate) fn run(model: &Model, tries: usize, spacing: f64, per_seed: usize) -> Outcome {
     let seeds = model.seeds(tries, spacing, 1);
-    let canvas = Canvas::intrinsic(&model.domain(), model.metric, per_seed * seeds.len()).unwrap();
+    let canvas = Canvas::intrinsic(model.domain().planar(), model.metric, per_seed * seeds.len()).unwrap();
     let nerve = Diagram::new(&canvas, model.metric, &seeds).unwrap().sharp_nerve();
     let outcome = check(model, &seeds, &Start::from_nerve(&nerve));
     outcome.demand();

@@ -3,9 +3,9 @@
 use super::models::{Model, Random, SQUARE, check, pulled_back, straight_delaunay};
 use crate::canvas::Canvas;
 use crate::diagram::Diagram;
-use crate::domain::{Domain, rect};
 use crate::geodesic::{Fineness, Margin, Paths, margin_by_power};
 use crate::geometry::{Point, Tensor};
+use crate::manifold::domain::{Domain, rect};
 use crate::metric::{Formula, MetricField, Scaled, Shock, Swirl};
 use crate::rdt::{Edge, Rdt, Start, Trust};
 
@@ -57,7 +57,7 @@ fn margins_agree_with_the_definition_where_curvature_varies() {
         let unit = Scaled { field, factor };
         let seeds = darts(&unit, corners, 12_000);
         let domain = Domain::new(&rect(corners[0], corners[1]).unwrap()).unwrap();
-        let canvas = Canvas::intrinsic(&domain, &unit, 40 * seeds.len()).unwrap();
+        let canvas = Canvas::intrinsic(domain.planar(), &unit, 40 * seeds.len()).unwrap();
         let nerve = Diagram::new(&canvas, &unit, &seeds).unwrap().sharp_nerve();
         let rdt = Rdt::new(&unit, &seeds, &Start::from_nerve(&nerve), Trust::default());
         let paths = Paths::default();
@@ -87,7 +87,7 @@ fn poor_starts_end_in_the_same_triangulation() {
     let model = Model { name: "vortex", corners: SQUARE, map: &map, metric: &metric, curvature: 0.0 };
     let seeds = model.seeds(20_000, 0.05, 3);
     check(&model, &seeds, &straight_delaunay(&seeds));
-    let canvas = Canvas::intrinsic(&model.domain(), &metric, 10 * seeds.len()).unwrap();
+    let canvas = Canvas::intrinsic(model.domain().planar(), &metric, 10 * seeds.len()).unwrap();
     let nerve = Diagram::new(&canvas, &metric, &seeds).unwrap().nerve();
     check(&model, &seeds, &Start::from_nerve(&nerve)).demand();
     // Every tenth triangle missing, another tenth there twice, turned.

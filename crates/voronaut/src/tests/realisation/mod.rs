@@ -5,10 +5,10 @@ mod simplices;
 
 use crate::canvas::Canvas;
 use crate::diagram::Diagram;
-use crate::domain::Domain;
 use crate::dual::Road;
 use crate::geodesic::Polyline;
 use crate::geometry::{Point, Tensor};
+use crate::manifold::domain::Domain;
 use crate::metric::MetricField;
 use crate::progress::Silent;
 use crate::quality::{Validity, validity};
@@ -25,7 +25,7 @@ pub(crate) fn seeds(count: usize, low: Point, high: Point) -> Vec<Point> {
 
 pub(crate) fn realised(domain: &str, field: &dyn MetricField, seeds: &[Point], canvas: usize) -> Realisation {
     let domain = Domain::shape(domain).unwrap();
-    let canvas = Canvas::intrinsic(&domain, field, canvas).unwrap();
+    let canvas = Canvas::intrinsic(domain.planar(), field, canvas).unwrap();
     let diagram = Diagram::new(&canvas, field, seeds).unwrap();
     let dual = recipe::dual(&diagram, field, Road::Both, &Silent);
     Realisation::new(&diagram, field, &dual.triangles)
@@ -100,7 +100,7 @@ fn edges_of_uniform_metrics_are_segments() {
 fn swirl_and_shock_are_embedded_although_straight_edges_are_not() {
     for (domain, metric, half) in [("rect:-2,-2,2,2", "swirl", 2.0), ("rect:-1,-1,1,1", "shock:phi=1,lambda=0.6", 1.0)]
     {
-        let field = recipe::metric_named(metric, &Domain::shape(domain).unwrap()).unwrap();
+        let field = recipe::metric_named(metric, Domain::shape(domain).unwrap().planar()).unwrap();
         // The centre of the swirl is singular, and edges of the seeds around run together there.
         let mut seeds = seeds(280, Point::new(-half, -half), Point::new(half, half));
         seeds.extend((0..20).map(|i| {
@@ -138,7 +138,7 @@ fn edges_are_led_around_a_hole() {
     ]);
     let field = |_: Point| Tensor::IDENTITY;
     let seeds = [(-0.2, -0.6), (-0.1, 0.7), (1.9, -1.9), (-1.9, 1.9)].map(|(x, y)| Point::new(x, y));
-    let canvas = Canvas::intrinsic(&domain, &field, 4000).unwrap();
+    let canvas = Canvas::intrinsic(domain.planar(), &field, 4000).unwrap();
     let diagram = Diagram::new(&canvas, &field, &seeds).unwrap();
     let found = Realisation::new(&diagram, &field, &[[0, 2, 1], [1, 3, 0]]);
     let edge = &found.edges[found.edge_between(0, 1).unwrap()];

@@ -9,12 +9,13 @@ use crate::dual::Road;
 use crate::geodesic::Method;
 use crate::geometry::Tensor3;
 use crate::lists::{distinct, in_order};
+use crate::manifold::surface::Surface;
+use crate::manifold::surface::metric::Constant;
+use crate::manifold::{Manifold, Place};
 use crate::mesh::Mesh;
 use crate::parallel::prelude::*;
 use crate::progress::Silent;
 use crate::recipe::surface_dual;
-use crate::surface::metric::Constant;
-use crate::surface::{Input, Place, Surface};
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
 use std::collections::{BTreeMap, HashMap};
 use std::f64::consts::PI;
@@ -228,28 +229,28 @@ fn seeded(surface: &Surface, count: usize) -> Vec<VertexId> {
 }
 
 /// An ellipsoid with edges of about so long a part of the unit.
-fn ellipsoid(fineness: f64) -> Input {
-    let sphere = Input::shape("sphere:1", Some(fineness)).unwrap().surface.to_mesh();
+fn ellipsoid(fineness: f64) -> Manifold {
+    let sphere = Manifold::shape("sphere:1", Some(fineness)).unwrap().surface().to_mesh();
     let points = sphere.points.iter().map(|&[x, y, z]| [x, 0.7 * y, 0.5 * z]).collect();
-    Input::new(Surface::new(&Mesh { points, ..sphere }).unwrap(), None)
+    Manifold::new(Surface::new(&Mesh { points, ..sphere }).unwrap(), None)
 }
 
-fn compare(input: &Input, count: usize) {
-    let seeds = seeded(&input.surface, count);
-    let forced = by_force(&input.surface, &seeds);
+fn compare(input: &Manifold, count: usize) {
+    let seeds = seeded(input.surface(), count);
+    let forced = by_force(input.surface(), &seeds);
     let metric = Constant(Tensor3::IDENTITY);
-    let places: Vec<Place> = seeds.iter().map(|&v| input.surface.place_of(v).unwrap()).collect();
+    let places: Vec<Place> = seeds.iter().map(|&v| input.place_of(v).unwrap()).collect();
     let size = size_for(places.len(), 20);
     let (canvas, at) = Canvas::on_surface(Kind::Intrinsic, input, &metric, size, &places).unwrap();
     let diagram = SurfaceDiagram::on_surface(&canvas, &at, Method::March).unwrap();
     let ours = distinct(surface_dual(&diagram, Road::Both, &Silent).triangles.into_iter().map(in_order));
     let wrong: Vec<_> = forced.iter().filter(|(t, _)| ours.binary_search(t).is_err()).collect();
     let clearly = wrong.iter().filter(|(_, gap)| **gap > 1e-3).count();
-    let expected = (2 * (seeds.len().cast_signed() - input.surface.euler_characteristic())) as usize;
+    let expected = (2 * (seeds.len().cast_signed() - input.surface().euler_characteristic())) as usize;
     let others = ours.iter().filter(|t| !forced.contains_key(*t)).count();
     println!(
         "{} vertices; of {expected} triangles {} by force and {} ours; {} missing ({clearly} above 1e-3), {others} others",
-        input.surface.positions().len(),
+        input.positions().len(),
         forced.len(),
         ours.len(),
         wrong.len()
@@ -269,8 +270,8 @@ fn duals_on_an_ellipsoid_are_those_that_force_finds() {
 
 #[test]
 fn duals_on_a_torus_are_those_that_force_finds() {
-    let torus = Input::shape("torus:2,0.7", Some(0.04)).unwrap();
-    compare(&Input::new(torus.surface, None), 3000);
+    let torus = Manifold::shape("torus:2,0.7", Some(0.04)).unwrap();
+    compare(&Manifold::new(torus.surface().clone(), None), 3000);
 }
 
 #[test]

@@ -7,17 +7,22 @@ use crate::diagram::SurfaceDiagram;
 use crate::dual::Road;
 use crate::geodesic::Method;
 use crate::geometry::{Point3, Tensor3, Vector3};
+use crate::manifold::surface::metric::Constant;
+use crate::manifold::surface::sphere;
+use crate::manifold::{Manifold, Place};
 use crate::net::Net;
 use crate::progress::Silent;
 use crate::recipe::{surface_dual, surface_net};
-use crate::surface::metric::Constant;
-use crate::surface::{Input, Place, sphere};
 use std::f64::consts::{PI, TAU};
 
 /// Canvas vertices for each seed.
 const PER_SEED: usize = 20;
 
-fn with_diagram<T>(input: &Input, seeds: &[Point3], each: impl Fn(&SurfaceDiagram, &[[u32; 3]], Net<Place>) -> T) -> T {
+fn with_diagram<T>(
+    input: &Manifold,
+    seeds: &[Point3],
+    each: impl Fn(&SurfaceDiagram, &[[u32; 3]], Net<Place>) -> T,
+) -> T {
     let metric = Constant(Tensor3::IDENTITY);
     let places: Vec<Place> = seeds.iter().map(|&p| input.closest(p).unwrap()).collect();
     let (canvas, at): (Canvas<Draped>, _) =
@@ -28,7 +33,7 @@ fn with_diagram<T>(input: &Input, seeds: &[Point3], each: impl Fn(&SurfaceDiagra
     each(&diagram, &exact, net)
 }
 
-fn certified(input: &Input, seeds: &[Point3]) -> Certificate {
+fn certified(input: &Manifold, seeds: &[Point3]) -> Certificate {
     with_diagram(input, seeds, |diagram, exact, net| {
         Certificate::on_surface(diagram, exact, &net, Constants::Corrected)
     })
@@ -58,7 +63,7 @@ fn random_on_sphere(count: usize) -> Vec<Point3> {
 
 #[test]
 fn nets_on_the_sphere_are_those_of_spherical_geometry() {
-    let input = Input::shape("sphere:1", Some(0.1)).unwrap();
+    let input = Manifold::shape("sphere:1", Some(0.1)).unwrap();
     for seeds in [sphere(1.0, 0.3).unwrap().positions().to_vec(), random_on_sphere(200)] {
         let net = with_diagram(&input, &seeds, |_, _, net| net);
         let at: Vec<Vector3> = seeds.iter().map(|&p| unit(p)).collect();
@@ -84,7 +89,7 @@ fn nets_on_the_sphere_are_those_of_spherical_geometry() {
 
 #[test]
 fn a_protected_net_of_the_sphere_has_an_embedded_dual_and_a_random_one_is_not_known_to() {
-    let input = Input::shape("sphere:1", Some(0.1)).unwrap();
+    let input = Manifold::shape("sphere:1", Some(0.1)).unwrap();
     let even = certified(&input, sphere(1.0, 0.3).unwrap().positions());
     // K = 1, and the injectivity radius is pi: estimated from below.
     let convexity = even.convexity;
@@ -115,7 +120,7 @@ fn a_protected_net_of_the_sphere_has_an_embedded_dual_and_a_random_one_is_not_kn
 /// Curvature alone would allow disks of radius pi / (2 sqrt K) = 0.52, but the way around the tube is 0.63 only.
 #[test]
 fn short_ways_around_a_thin_torus_are_seen() {
-    let (input, r) = (Input::shape("torus:1,0.1", Some(0.08)).unwrap(), 0.1);
+    let (input, r) = (Manifold::shape("torus:1,0.1", Some(0.08)).unwrap(), 0.1);
     let [around, across] = [80_u32, 8];
     let seed = |k: u32| {
         let (i, j) = (k / across, k % across);
@@ -138,7 +143,7 @@ fn short_ways_around_a_thin_torus_are_seen() {
 #[test]
 fn triangles_without_an_equation_are_not_certified() {
     let surface = sphere(1.0, 0.2).unwrap();
-    let found = certified(&Input::new(surface, None), sphere(1.0, 1.0).unwrap().positions());
+    let found = certified(&Manifold::new(surface, None), sphere(1.0, 1.0).unwrap().positions());
     let found = verdict(&found, "10.20");
     assert!(
         found.outcome != Outcome::Holds && found.not_measured.as_ref().unwrap().contains("no equation"),

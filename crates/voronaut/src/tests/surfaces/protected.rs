@@ -1,13 +1,14 @@
 //! Seeds on surfaces that are power-protected because it was asked for; their nets against closed forms.
 
 use crate::geometry::{Point3, Tensor3, Vector3};
+use crate::manifold::surface::FeatureOptions;
+use crate::manifold::surface::metric::Constant;
+use crate::manifold::{Manifold, Place};
 use crate::mesh::Mesh;
 use crate::net::Net;
 use crate::progress::Silent;
 use crate::quality::validity;
 use crate::recipe::{MeshOptions, Meshed, Seeding, mesh_surface};
-use crate::surface::metric::Constant;
-use crate::surface::{FeatureOptions, Input, Place, Surface};
 
 /// Not relaxed: there is something to do.
 fn options(vertices: usize) -> MeshOptions {
@@ -15,7 +16,7 @@ fn options(vertices: usize) -> MeshOptions {
     MeshOptions { vertices: Some(vertices), lloyd: 0, seeding: Seeding::Protected, canvas_size: 10, ..usual }
 }
 
-fn meshed(input: &Input, options: &MeshOptions) -> Meshed {
+fn meshed(input: &Manifold, options: &MeshOptions) -> Meshed {
     let meshed = mesh_surface(input, &Constant(Tensor3::IDENTITY), None, options, &Silent).unwrap();
     assert!(validity(&meshed.mesh).valid);
     meshed
@@ -60,10 +61,10 @@ fn flat_circle([a, b, c]: [Point3; 3]) -> (Point3, f64) {
 }
 
 /// A square that stands askew, of two triangles.
-fn square() -> Input {
+fn square() -> Manifold {
     let points = vec![[0.0, 0.0, 0.0], [0.8, 0.0, 0.6], [0.8, 1.0, 0.6], [0.0, 1.0, 0.0]];
     let mesh = Mesh { points, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() };
-    Input::new(Surface::new(&mesh).unwrap(), None).cut(&FeatureOptions::default()).unwrap()
+    Manifold::of(&mesh).unwrap().cut(&FeatureOptions::default()).unwrap()
 }
 
 #[test]
@@ -83,7 +84,7 @@ fn arc(p: Point3, q: Point3) -> f64 {
 
 #[test]
 fn seeds_of_a_sphere_are_protected_and_their_net_is_that_of_spherical_geometry() {
-    let input = Input::shape("sphere:1", Some(0.1)).unwrap();
+    let input = Manifold::shape("sphere:1", Some(0.1)).unwrap();
     for protection in [0.45, 0.55] {
         let meshed = meshed(&input, &MeshOptions { protection, ..options(200) });
         demand_protected(&meshed, protection);
@@ -111,12 +112,12 @@ fn what_cannot_be_had_is_noted() {
     assert_eq!(net(&meshed).interior().filter(|ball| ball.protection() < least).count(), account.unprotected);
 }
 
-fn cube() -> Input {
+fn cube() -> Manifold {
     let points = (0..8_u32).map(|i| [i & 1, i >> 1 & 1, i >> 2].map(f64::from)).collect();
     let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     let triangles = sides.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
     let mesh = Mesh { points, triangles, ..Mesh::default() };
-    Input::new(Surface::new(&mesh).unwrap(), None).cut(&FeatureOptions::default()).unwrap()
+    Manifold::of(&mesh).unwrap().cut(&FeatureOptions::default()).unwrap()
 }
 
 /// Features have their vertices where they have them without, and triangles the numbers of the mesh's vertices.
@@ -147,7 +148,7 @@ fn demand_circles_of_mesh(meshed: &Meshed) {
 
 #[test]
 fn protection_on_surfaces_does_not_depend_on_threads() {
-    let input = Input::shape("sphere:1", Some(0.1)).unwrap();
+    let input = Manifold::shape("sphere:1", Some(0.1)).unwrap();
     let options = MeshOptions { protection: 0.5, ..options(150) };
     let with = |threads: usize| crate::test_cases::on_threads(threads, || meshed(&input, &options));
     let [one, three] = [1, 3].map(with);

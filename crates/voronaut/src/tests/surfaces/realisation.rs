@@ -6,13 +6,13 @@ use crate::diagram::SurfaceDiagram;
 use crate::dual::Road;
 use crate::geodesic::Method;
 use crate::geometry::{Point, Point3, Tensor3};
+use crate::manifold::surface::metric::{Constant, SurfaceMetric};
+use crate::manifold::{Manifold, Place};
 use crate::mesh::Mesh;
 use crate::progress::Silent;
 use crate::quality::{Meetings, validity_on};
 use crate::realisation::Realisation;
 use crate::recipe;
-use crate::surface::metric::{Constant, SurfaceMetric};
-use crate::surface::{Input, Place};
 
 /// Canvas vertices for each seed.
 const PER_SEED: usize = 80;
@@ -22,7 +22,7 @@ fn realised<T>(
     metric: &dyn SurfaceMetric,
     each: impl Fn(&SurfaceDiagram, Realisation<Point3>) -> T,
 ) -> T {
-    let input = Input::shape("sphere:1", None).unwrap();
+    let input = Manifold::shape("sphere:1", None).unwrap();
     let places: Vec<Place> = seeds.iter().map(|&p| input.closest(p).unwrap()).collect();
     let size = PER_SEED * seeds.len();
     let (canvas, at) = Canvas::on_surface(Kind::Intrinsic, &input, metric, size, &places).unwrap();

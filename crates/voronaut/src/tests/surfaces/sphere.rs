@@ -6,10 +6,10 @@ use crate::diagram::SurfaceDiagram;
 use crate::dual::Road;
 use crate::geodesic::Method;
 use crate::geometry::{Point3, Tensor3};
+use crate::manifold::surface::metric::Constant;
+use crate::manifold::{Manifold, Place};
 use crate::progress::Silent;
 use crate::recipe;
-use crate::surface::metric::Constant;
-use crate::surface::{Input, Place};
 use crate::triangulation::smallest_first;
 use std::collections::HashSet;
 
@@ -35,7 +35,7 @@ fn farthest_out(seeds: &[Point3], [a, b, c]: [u32; 3]) -> f64 {
 }
 
 fn dual_of(seeds: &[Point3], per_seed: usize) -> Vec<[u32; 3]> {
-    let input = Input::shape("sphere:1", None).unwrap();
+    let input = Manifold::shape("sphere:1", None).unwrap();
     let metric = Constant(Tensor3::IDENTITY);
     let places: Vec<Place> = seeds.iter().map(|&p| input.closest(p).unwrap()).collect();
     let (canvas, at) = Canvas::on_surface(Kind::Intrinsic, &input, &metric, per_seed * seeds.len(), &places).unwrap();

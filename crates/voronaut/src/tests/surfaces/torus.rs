@@ -6,16 +6,16 @@ use crate::diagram::SurfaceDiagram;
 use crate::dual::Road;
 use crate::geodesic::Method;
 use crate::geometry::{Point3, Tensor3};
+use crate::manifold::surface::metric::Constant;
+use crate::manifold::{Manifold, Place};
 use crate::progress::Silent;
 use crate::recipe::surface_dual;
-use crate::surface::metric::Constant;
-use crate::surface::{Input, Place};
 use std::collections::HashMap;
 use std::f64::consts::TAU;
 
 #[test]
 fn duals_on_a_torus_are_closed_with_characteristic_zero() {
-    let (input, metric) = (Input::shape("torus:2,0.7", None).unwrap(), Constant(Tensor3::IDENTITY));
+    let (input, metric) = (Manifold::shape("torus:2,0.7", None).unwrap(), Constant(Tensor3::IDENTITY));
     let mut random = Random(88_172_645_463_325_252);
     let mut seed = || {
         let (around, across) = (TAU * random.next(), TAU * random.next());

@@ -1,8 +1,8 @@
 //! A wavy sheet of triangles, which unrolls into a rectangle: every distance on it is known to rounding.
 
 use crate::geometry::{Point, Point3};
+use crate::manifold::Manifold;
 use crate::mesh::Mesh;
-use crate::surface::{Input, Surface};
 
 /// z = 0.2 sin(3 x) over the square from -1 to 1, sampled on a grid: flat between columns of vertices.
 pub(crate) struct Wavy {
@@ -27,7 +27,7 @@ impl Wavy {
     }
 
     /// Its triangles, with so many rows of vertices.
-    pub(crate) fn input(&self, rows: u32) -> Input {
+    pub(crate) fn input(&self, rows: u32) -> Manifold {
         let n = self.columns.len() as u32;
         let y = |j: u32| 2.0 * f64::from(j) / f64::from(rows - 1) - 1.0;
         let points = (0..rows).flat_map(|j| self.columns.iter().map(move |&(x, _)| [x, y(j), height(x)])).collect();
@@ -35,7 +35,7 @@ impl Wavy {
         let triangles: Vec<[u32; 3]> = cells.flat_map(|v| [[v, v + 1, v + n + 1], [v, v + n + 1, v + n]]).collect();
         let triangle_labels = vec![1; triangles.len()];
         let mesh = Mesh { points, triangles, triangle_labels, ..Mesh::default() };
-        Input::new(Surface::new(&mesh).unwrap(), None)
+        Manifold::of(&mesh).unwrap()
     }
 
     /// How long it is unrolled; its width is 2.
