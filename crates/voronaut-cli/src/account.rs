@@ -4,12 +4,10 @@ use crate::curves;
 use serde_json::Value;
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 use voronaut::figures::NetFigures;
-use voronaut::manifold::Manifold;
+use voronaut::manifold::Riemannian;
 use voronaut::manifold::surface::Mended;
-use voronaut::manifold::surface::metric::{Scaled, SurfaceMetric};
 use voronaut::mesh::Mesh;
-use voronaut::metric::MetricField;
-use voronaut::quality::{Unmet, metric_quality, surface_quality, surface_unmet, unmet};
+use voronaut::quality::{Unmet, metric_quality, unmet};
 use voronaut::recipe::Meshed;
 use voronaut::{Error, Result};
 use voronaut_io::{ClosedForm, Report, Seconds, Strayed};
@@ -25,36 +23,19 @@ pub(crate) fn ours(error: Error) -> Error {
     }
 }
 
-/// The report of a planar mesh, in a metric; and its edges that are not of unit length. Neither is measured where nobody is told.
-pub(crate) fn in_plane(
+/// The report of a mesh in the metric times the factor that it was made for; and its edges that are not of unit length. Neither is measured where nobody
+/// is told.
+pub(crate) fn of(
     meshed: &Meshed,
-    metric: &dyn MetricField,
-    options: Value,
-    is_told: bool,
-) -> Result<(Report, Unmet)> {
-    let (mut report, mut unmet) = (report(meshed, options), Unmet::default());
-    if is_told {
-        unmet = measure_in_plane(&mut report, &meshed.mesh, metric)?;
-        report.closed_form = closed_form(meshed, &unmet);
-    }
-    Ok((report, unmet))
-}
-
-/// The report of the mesh of a surface, in a metric that is still to be scaled; and its edges that are
-/// not of unit length. Neither is measured where nobody is told.
-pub(crate) fn on_surface(
-    meshed: &Meshed,
-    input: &Manifold,
+    on: Riemannian,
     mended: &Mended,
-    metric: &dyn SurfaceMetric,
     options: Value,
     is_told: bool,
 ) -> Result<(Report, Unmet)> {
     let meets = meshed.validity.meetings.note();
-    let scaled = Scaled { field: metric, factor: meshed.metric_scale };
     let (mut report, mut unmet) = (report(meshed, options), Unmet::default());
     if is_told {
-        unmet = measure_on_surface(&mut report, &meshed.mesh, input, &scaled)?;
+        unmet = measure(&mut report, &meshed.mesh, on)?;
         report.closed_form = closed_form(meshed, &unmet);
     }
     report.notes.extend(mended.sentences().chain(meets));
@@ -72,29 +53,15 @@ fn closed_form(meshed: &Meshed, unmet: &Unmet) -> Option<ClosedForm> {
     Some(ClosedForm { metric_scale, unit_fraction })
 }
 
-/// Adds what a planar mesh is in a metric; its edges that are not of unit length.
-pub(crate) fn measure_in_plane(report: &mut Report, mesh: &Mesh, metric: &dyn MetricField) -> Result<Unmet> {
-    let unmet = unmet(mesh, metric, |_| ())?;
-    match &unmet.quality {
-        Some(quality) => report.add_quality(quality),
-        None => report.add_quality(&metric_quality(mesh, metric)?),
+/// Adds what a mesh is in a metric; its edges that are not of unit length.
+pub(crate) fn measure(report: &mut Report, mesh: &Mesh, on: Riemannian) -> Result<Unmet> {
+    if let Riemannian::Surface(_, metric) = on {
+        report.curvature = metric.curvature_figures();
     }
-    report.unmet = Some(unmet.figures());
-    Ok(unmet)
-}
-
-/// Adds what the mesh of a surface is in a metric; its edges that are not of unit length.
-pub(crate) fn measure_on_surface(
-    report: &mut Report,
-    mesh: &Mesh,
-    surface: &Manifold,
-    metric: &Scaled,
-) -> Result<Unmet> {
-    report.curvature = metric.field.curvature_figures();
-    let unmet = surface_unmet(mesh, surface, metric, |_| ())?;
+    let unmet = unmet(mesh, on, |_| ())?;
     match &unmet.quality {
         Some(quality) => report.add_quality(quality),
-        None => report.add_quality(&surface_quality(mesh, surface, metric)?),
+        None => report.add_quality(&metric_quality(mesh, on)?),
     }
     report.unmet = Some(unmet.figures());
     Ok(unmet)

@@ -150,8 +150,8 @@ fn in_plane(
     let mut layers = Layers::default();
     let metric = args.metric.as_deref().map(|text| planar_metric(args, world, text, mesh, domain)).transpose()?;
     if let Some(metric) = metric.as_deref() {
-        let unmet = account::measure_in_plane(report, mesh, metric)?;
-        report.histograms = files::histograms(&args.outputs, mesh, metric)?;
+        let unmet = account::measure(report, mesh, metric.into())?;
+        report.histograms = files::histograms(&args.outputs, mesh, metric.into())?;
         layers.unmet = Some(unmet).filter(|_| args.outputs.shows(Show::Unmet));
     }
     if let Some(text) = &args.function {
@@ -200,8 +200,8 @@ fn on_surface(
         let factor = args.metric_scale.unwrap_or(1.0);
         let field = fields::on_surface(world, text, input, &args.metric_choices, GradedAt::Scale(factor))?;
         let scaled = Scaled { field: field.as_ref(), factor };
-        unmet = account::measure_on_surface(report, mesh, input, &scaled)?;
-        report.histograms = files::histograms_on(&args.outputs, mesh, input, &scaled)?;
+        unmet = account::measure(report, mesh, (input, &scaled).into())?;
+        report.histograms = files::histograms(&args.outputs, mesh, (input, &scaled).into())?;
     }
     picture(&unmet)
 }

@@ -8,23 +8,22 @@ use crate::{fields, files, pages, pictures};
 use clap::Args;
 use serde_json::{Value, json};
 use std::path::PathBuf;
-use voronaut::canvas::{self, Canvas};
-use voronaut::certificate::{Certificate, Constants};
-use voronaut::diagram::{self, Diagram, Ground, Kind, RESOLVE_ROUNDS, SurfaceDiagram, resolve};
+use voronaut::canvas::{self, Canvas, CanvasFigures};
+use voronaut::certificate::Constants;
+use voronaut::diagram::{self, Diagram, Ground, Kind, Nerve, RESOLVE_ROUNDS, SurfaceDiagram, resolve};
 use voronaut::dual::Road;
 use voronaut::figures;
 use voronaut::geodesic::Method;
 use voronaut::geometry::Point;
-use voronaut::manifold::Manifold;
 use voronaut::manifold::domain::Domain;
 use voronaut::manifold::surface::Mended;
+use voronaut::manifold::{Manifold, Riemannian};
 use voronaut::mesh::Mesh;
 use voronaut::metric::MetricField;
-use voronaut::quality::{
-    Meetings, MetricQuality, Validity, crossing_edges, metric_quality, surface_quality, validity, validity_on,
-};
+use voronaut::net::Net;
+use voronaut::quality::{Meetings, Validity, crossing_edges, metric_quality, validity, validity_on};
 use voronaut::realisation::Realisation;
-use voronaut::recipe::{self, GradedAt, MeshOptions, SeedDual};
+use voronaut::recipe::{self, GradedAt, Measured, MeshOptions, SeedDual};
 use voronaut::sampling;
 use voronaut::{Error, Result};
 use voronaut_draw::Layers;
@@ -147,68 +146,28 @@ fn in_plane(args: &DualArgs, world: &World, domain: &Domain, mended: &Mended, mu
     let file = SeedFile::of_points(world.seeds(&args.seeds)?)?;
     stages.end("read");
     let canvas = canvas(args, domain, metric, &file)?;
-    let is_riemannian = args.voronoi == Kind::Riemannian;
     stages.end("canvas");
     let diagram = Diagram::of_kind(args.voronoi, &canvas, metric, &file.seeds, args.geodesic)?;
     stages.end("diagram");
-    let SeedDual { triangles, nerve, mut account, seconds, exact, raw_nerve } =
-        recipe::dual(&diagram, metric, args.dual, &*world.progress(&args.run));
-    let mesh = diagram.to_mesh(triangles, &nerve, &domain.pslg().segments);
-    account.crossing_edges = Some(crossing_edges(&mesh).len());
-    stages.end("dual");
-    let is_curved = args.edges == EdgesOut::Geodesic || outputs.have_geodesics() || args.paged.cells;
-    let curved = is_curved.then(|| Realisation::new(&diagram, metric, &mesh.triangles));
-    account.geodesics = curved.as_ref().map(figures::Geodesics::of);
-    if is_curved {
-        stages.end("geodesics");
-    }
-    let mut report = reported(args, &mesh, validity(&mesh), || metric_quality(&mesh, metric))?;
-    report.dual = Some(account);
-    report.histograms = files::histograms(outputs, &mesh, metric)?;
-    report.canvas = Some(canvas.figures());
-    report.diagram =
-        Some(figures::Diagram { raw_nerve: is_riemannian.then_some(raw_nerve), ..figures::Diagram::of(&diagram) });
-    let is_measured = args.net || outputs.shows(Show::Protection) || args.is_certified();
-    let net = (is_riemannian && is_measured).then(|| recipe::net(&diagram, metric, &exact));
-    report.net = net.as_ref().map(figures::NetFigures::of);
-    if net.is_some() {
-        stages.end("net");
-    }
-    let certified = net.as_ref().filter(|_| args.is_certified());
-    report.certificate = certified.map(|net| Certificate::new(&diagram, &exact, net, args.constants));
-    if report.certificate.is_some() {
-        stages.end("certificate");
-    }
-    report.notes = notes(&diagram, &report);
-    report.notes.extend(mended.sentences());
-    // Parts of "dual".
-    report.seconds = stages.seconds(seconds);
-    demand_embedded(args, world, &report)?;
-    let certificate = report.certificate.as_ref().filter(|_| outputs.shows(Show::Certificate));
-    let layers = Layers {
-        protection: pictures::protection(outputs, net.as_ref(), MeshOptions::default().protection),
-        factors: certificate.map(|found| found.cells.iter().map(|cell| (cell.seed, cell.factor)).collect()),
-        ..pictures::layers(outputs, &diagram, metric, curved.as_ref())
+    let work = Work { args, world, diagram: &diagram, on: metric.into(), mended };
+    let straight = |triangles, nerve: &Nerve| {
+        let mesh = diagram.to_mesh(triangles, nerve, &domain.pslg().segments);
+        let (found, crossing) = (validity(&mesh), crossing_edges(&mesh).len());
+        (mesh, found, Some(crossing))
     };
-    let picture = pictures::in_plane(outputs, &mesh, Some(metric), &layers)?;
-    let sheet = pages::of(&args.paged, &args.out, &mesh, |sheet| {
-        pages::measured_in_plane(sheet, metric, report.validity.valid)?;
-        if let Some(curved) = curved.as_ref().filter(|_| args.paged.cells) {
-            pages::show_diagram(sheet, &diagram, curved);
-        }
-        Ok(())
-    })?;
-    match curved.filter(|_| args.edges == EdgesOut::Geodesic) {
-        Some(curved) => world.write_realisation(&curved, &args.out)?,
-        None => world.write_mesh(mesh, &args.out)?,
-    }
-    pages::write(&args.paged, world, sheet)?;
-    finish(args, world, picture, &report, || diagram.to_coloured_canvas())
+    let found = work.found(canvas.figures(), straight, stages)?;
+    let certificate = found.report.certificate.as_ref().filter(|_| outputs.shows(Show::Certificate));
+    let layers = Layers {
+        protection: pictures::protection(outputs, found.net.as_ref(), MeshOptions::default().protection),
+        factors: certificate.map(|found| found.cells.iter().map(|cell| (cell.seed, cell.factor)).collect()),
+        ..pictures::layers(outputs, &diagram, metric, found.curved.as_ref())
+    };
+    let picture = pictures::in_plane(outputs, &found.mesh, Some(metric), &layers)?;
+    work.finish(found, picture)
 }
 
 /// The dual of seeds on a surface.
 fn on_surface(args: &DualArgs, world: &World, input: &Manifold, mended: &Mended, mut stages: Stages) -> Result<()> {
-    let is_riemannian = args.voronoi == Kind::Riemannian;
     pictures::demand_of_surfaces(&args.outputs)?;
     let metric = fields::on_surface(world, &args.metric, input, &args.metric_choices, GradedAt::Scale(1.0))?;
     let places = SeedFile::of_places(world.seeds(&args.seeds)?)?.on_surface(input)?;
@@ -223,57 +182,106 @@ fn on_surface(args: &DualArgs, world: &World, input: &Manifold, mended: &Mended,
     stages.end("canvas");
     let diagram = SurfaceDiagram::of_kind_on_surface(args.voronoi, &canvas, &at, args.geodesic)?;
     stages.end("diagram");
-    let SeedDual { triangles, mut account, seconds, raw_nerve, exact, .. } =
-        recipe::surface_dual(&diagram, args.dual, &*world.progress(&args.run));
-    let mesh = recipe::surface_mesh(input, &places, triangles);
-    stages.end("dual");
-    let found = validity_on(&mesh, &Meetings::of(input.whole_mesh()));
-    let meets = found.meetings.note();
-    let mut report = reported(args, &mesh, found, || surface_quality(&mesh, input, metric))?;
-    let is_curved = args.edges == EdgesOut::Geodesic || args.outputs.have_geodesics() || args.paged.cells;
-    let curved = is_curved.then(|| Realisation::on_surface(&diagram, &mesh.triangles));
-    account.geodesics = curved.as_ref().map(figures::Geodesics::of);
-    if is_curved {
-        stages.end("geodesics");
+    let work = Work { args, world, diagram: &diagram, on: (input, metric).into(), mended };
+    let straight = |triangles, _: &Nerve| {
+        let mesh = recipe::surface_mesh(input, &places, triangles);
+        let found = validity_on(&mesh, &Meetings::of(input.whole_mesh()));
+        (mesh, found, None)
+    };
+    let mut found = work.found(canvas.figures(), straight, stages)?;
+    if !found.report.validity.valid {
+        found.report.notes.push("straight triangles of the dual do not make a valid mesh of these seeds".into());
     }
-    report.dual = Some(account);
-    report.histograms = files::histograms_on(&args.outputs, &mesh, input, metric)?;
-    report.canvas = Some(canvas.figures());
-    report.diagram =
-        Some(figures::Diagram { raw_nerve: is_riemannian.then_some(raw_nerve), ..figures::Diagram::of(&diagram) });
-    let net = (is_riemannian && (args.net || args.is_certified())).then(|| recipe::surface_net(&diagram, &exact));
-    report.net = net.as_ref().map(figures::NetFigures::of);
-    if net.is_some() {
-        stages.end("net");
-    }
-    let certified = net.as_ref().filter(|_| args.is_certified());
-    report.certificate = certified.map(|net| Certificate::on_surface(&diagram, &exact, net, args.constants));
-    if certified.is_some() {
-        stages.end("certificate");
-    }
-    report.notes = notes(&diagram, &report);
-    report.notes.extend(mended.sentences().chain(meets));
-    if !report.validity.valid {
-        report.notes.push("straight triangles of the dual do not make a valid mesh of these seeds".into());
-    }
-    report.seconds = stages.seconds(seconds);
-    demand_embedded(args, world, &report)?;
-    let is_drawn = args.outputs.picture.is_some();
-    let picture =
-        is_drawn.then(|| pictures::on_surface(&args.outputs, &diagram, &mesh, curved.as_ref())).transpose()?;
-    let sheet = pages::of(&args.paged, &args.out, &mesh, |sheet| {
-        pages::measured_on_surface(sheet, input, metric, report.validity.valid)?;
-        if let Some(curved) = curved.as_ref().filter(|_| args.paged.cells) {
-            pages::show_diagram(sheet, &diagram, curved);
+    let draw = || pictures::on_surface(&args.outputs, &diagram, &found.mesh, found.curved.as_ref());
+    let picture = args.outputs.picture.is_some().then(draw).transpose()?;
+    work.finish(found, picture)
+}
+
+/// A diagram whose dual is made.
+struct Work<'w, 'a, G: Measured<'a>> {
+    args: &'w DualArgs,
+    world: &'w World<'w>,
+    diagram: &'w Diagram<'a, G>,
+    on: Riemannian<'w>,
+    mended: &'w Mended,
+}
+
+/// A dual with straight edges, and what is found of it.
+struct Found<S, P> {
+    mesh: Mesh,
+    report: Report,
+    net: Option<Net<S>>,
+    curved: Option<Realisation<P>>,
+}
+
+impl<'a, G: Measured<'a>> Work<'_, 'a, G> {
+    /// The dual by the road that is asked for; `straight` gives its triangles straight edges, and says how many of these cross.
+    fn found(
+        &self,
+        canvas: CanvasFigures,
+        straight: impl FnOnce(Vec<[u32; 3]>, &Nerve) -> (Mesh, Validity, Option<usize>),
+        mut stages: Stages,
+    ) -> Result<Found<G::Seed, G::Point>> {
+        let Self { args, diagram, .. } = *self;
+        let is_riemannian = args.voronoi == Kind::Riemannian;
+        let SeedDual { triangles, nerve, mut account, seconds, exact, raw_nerve } =
+            recipe::dual(diagram, args.dual, &*self.world.progress(&args.run));
+        let (mesh, validity, crossing) = straight(triangles, &nerve);
+        account.crossing_edges = crossing;
+        stages.end("dual");
+        let is_curved = args.edges == EdgesOut::Geodesic || args.outputs.have_geodesics() || args.paged.cells;
+        let curved = is_curved.then(|| G::realisation(diagram, &mesh.triangles));
+        account.geodesics = curved.as_ref().map(figures::Geodesics::of);
+        if is_curved {
+            stages.end("geodesics");
         }
-        Ok(())
-    })?;
-    match curved.filter(|_| args.edges == EdgesOut::Geodesic) {
-        Some(curved) => world.write_realisation(&curved, &args.out)?,
-        None => world.write_mesh(mesh, &args.out)?,
+        let meets = validity.meetings.note();
+        let mut report = reported(args, &mesh, validity, self.on)?;
+        report.dual = Some(account);
+        report.histograms = files::histograms(&args.outputs, &mesh, self.on)?;
+        report.canvas = Some(canvas);
+        let raw_nerve = is_riemannian.then_some(raw_nerve);
+        report.diagram = Some(figures::Diagram { raw_nerve, ..figures::Diagram::of(diagram) });
+        let is_measured = args.net || args.outputs.shows(Show::Protection) || args.is_certified();
+        let net = (is_riemannian && is_measured).then(|| recipe::net(diagram, &exact));
+        report.net = net.as_ref().map(figures::NetFigures::of);
+        if net.is_some() {
+            stages.end("net");
+        }
+        let certified = net.as_ref().filter(|_| args.is_certified());
+        report.certificate = certified.map(|net| G::certificate(diagram, &exact, net, args.constants));
+        if report.certificate.is_some() {
+            stages.end("certificate");
+        }
+        report.notes = notes(diagram, &report);
+        report.notes.extend(self.mended.sentences().chain(meets));
+        // Parts of "dual".
+        report.seconds = stages.seconds(seconds);
+        demand_embedded(args, self.world, &report)?;
+        Ok(Found { mesh, report, net, curved })
     }
-    pages::write(&args.paged, world, sheet)?;
-    finish(args, world, picture, &report, || diagram.to_coloured_canvas())
+
+    /// Writes what is asked for.
+    fn finish(&self, found: Found<G::Seed, G::Point>, picture: Option<String>) -> Result<()> {
+        let Self { args, world, diagram, .. } = *self;
+        let Found { mesh, report, curved, .. } = found;
+        let sheet = pages::of(&args.paged, &args.out, &mesh, |sheet| {
+            pages::measured(sheet, self.on, report.validity.valid)?;
+            if let Some(curved) = curved.as_ref().filter(|_| args.paged.cells) {
+                pages::show_diagram(sheet, diagram, curved);
+            }
+            Ok(())
+        })?;
+        match curved.filter(|_| args.edges == EdgesOut::Geodesic) {
+            Some(curved) => world.write_realisation(&curved, &args.out)?,
+            None => world.write_mesh(mesh, &args.out)?,
+        }
+        pages::write(&args.paged, world, sheet)?;
+        if args.diagram.is_some() || world.keeps_diagrams() {
+            world.write_diagram(diagram.to_coloured_canvas(), args.diagram.as_deref())?;
+        }
+        files::finish(world, &args.out, &args.outputs, picture, &report, &args.run)
+    }
 }
 
 /// What can be refused before the work.
@@ -285,20 +293,6 @@ fn demand(args: &DualArgs, world: &World) -> Result<()> {
     demand_geodesics(args)?;
     let what = "a picture of where a metric is not met by seeds that are given";
     refuse([(args.outputs.shows(Show::Unmet), what, "give the mesh of the dual to voronaut check")])
-}
-
-/// Writes what is beside the dual.
-fn finish(
-    args: &DualArgs,
-    world: &World,
-    picture: Option<String>,
-    report: &Report,
-    coloured: impl FnOnce() -> (Mesh, Vec<f64>),
-) -> Result<()> {
-    if args.diagram.is_some() || world.keeps_diagrams() {
-        world.write_diagram(coloured(), args.diagram.as_deref())?;
-    }
-    files::finish(world, &args.out, &args.outputs, picture, report, &args.run)
 }
 
 /// Vertices of the canvas of so many seeds; `None`: as many as its certificate asks for.
@@ -349,16 +343,11 @@ fn demand_geodesics(args: &DualArgs) -> Result<()> {
 }
 
 /// The figures of the dual with straight edges, in the metric only where it is valid.
-fn reported(
-    args: &DualArgs,
-    mesh: &Mesh,
-    found: Validity,
-    quality: impl FnOnce() -> Result<MetricQuality>,
-) -> Result<Report> {
+fn reported(args: &DualArgs, mesh: &Mesh, found: Validity, on: Riemannian) -> Result<Report> {
     let is_valid = found.valid;
     let mut report = Report::new(mesh, found);
     if is_valid {
-        report.add_quality(&quality()?);
+        report.add_quality(&metric_quality(mesh, on)?);
     }
     report.options = args.as_used();
     Ok(report)

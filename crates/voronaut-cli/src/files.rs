@@ -4,10 +4,8 @@ use crate::options::{Outputs, Run};
 use crate::summary;
 use crate::world::World;
 use std::path::Path;
-use voronaut::manifold::Manifold;
-use voronaut::manifold::surface::metric::SurfaceMetric;
+use voronaut::manifold::Riemannian;
 use voronaut::mesh::{Mesh, SolutionValues, Solutions};
-use voronaut::metric::MetricField;
 use voronaut::quality::{self, Histograms};
 use voronaut::{Error, Result};
 use voronaut_io::{Fields, Format, Report, ending};
@@ -94,18 +92,8 @@ pub(crate) fn values_of(mesh: &Mesh, values: Solutions, file: &Path) -> Result<F
 }
 
 /// The distributions of lengths and angles, if they are to be drawn.
-pub(crate) fn histograms(outputs: &Outputs, mesh: &Mesh, metric: &dyn MetricField) -> Result<Option<Histograms>> {
-    outputs.histograms.is_some().then(|| quality::histograms(mesh, metric)).transpose()
-}
-
-/// The same of the mesh of a surface.
-pub(crate) fn histograms_on(
-    outputs: &Outputs,
-    mesh: &Mesh,
-    input: &Manifold,
-    metric: &dyn SurfaceMetric,
-) -> Result<Option<Histograms>> {
-    outputs.histograms.is_some().then(|| quality::histograms_on(mesh, input, metric)).transpose()
+pub(crate) fn histograms(outputs: &Outputs, mesh: &Mesh, on: Riemannian) -> Result<Option<Histograms>> {
+    outputs.histograms.is_some().then(|| quality::histograms(mesh, on)).transpose()
 }
 
 /// Writes what is beside a mesh, picture, histograms and report, as far as asked for, and says what was found.

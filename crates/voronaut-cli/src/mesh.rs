@@ -18,10 +18,10 @@ use voronaut::diagram::{Diagram, Kind, SurfaceDiagram};
 use voronaut::dual::Road;
 use voronaut::geodesic::Method;
 use voronaut::geometry::Point;
-use voronaut::manifold::Manifold;
 use voronaut::manifold::domain::Domain;
 use voronaut::manifold::surface::Mended;
 use voronaut::manifold::surface::metric::{Finer, Scaled, Spec};
+use voronaut::manifold::{Manifold, Riemannian};
 use voronaut::mesh::Mesh;
 use voronaut::metric::{Expression, MetricField};
 use voronaut::quality::{InterpolationError, Unmet, interpolation_error, interpolation_error_on};
@@ -282,18 +282,18 @@ fn in_plane(args: &MeshArgs, world: &World, domain: &Domain, mended: &Mended, st
     curves::demand_made(mesh, options.order)?;
     let scaled = |p: Point| metric.at(p) * meshed.metric_scale;
     let is_told = world.tells(&args.run) || outputs.picture.is_some();
-    let (mut report, unmet) = account::in_plane(&meshed, &scaled, used, is_told)?;
+    let on = Riemannian::from(&scaled);
+    let (mut report, unmet) = account::of(&meshed, on, mended, used, is_told)?;
     if args.in_parts.parts.is_some() {
         // Each part has its own, of which nothing is kept.
         (report.dual, report.relaxation) = (None, None);
     }
-    report.notes.extend(mended.sentences());
-    report.histograms = files::histograms(outputs, mesh, &scaled)?;
+    report.histograms = files::histograms(outputs, mesh, on)?;
     let error = |aim: Aim| interpolation_error(mesh, aim.function, aim.norm);
     report.interpolation = aim.map(error).transpose()?;
     report.seconds.total = world.seconds() - start;
     let sheet = pages::of(&args.paged, &args.out, &meshed.mesh, |sheet| {
-        pages::measured_in_plane(sheet, &scaled, meshed.mesh.curved.is_none())?;
+        pages::measured(sheet, on, meshed.mesh.curved.is_none())?;
         args.drawn().map_or(Ok(()), |drawn| pages::with_cells(sheet, domain, &scaled, drawn))
     })?;
     let layers = Layers {
@@ -314,7 +314,7 @@ fn cells(args: &MeshArgs, domain: &Domain, mesh: &Mesh, metric: &dyn MetricField
     let size = (args.canvas_size as usize).saturating_mul(seeds.len());
     let canvas = Canvas::new(args.canvas, domain.planar(), metric, size)?;
     let diagram = Diagram::new(&canvas, metric, &seeds)?;
-    let curved = args.outputs.have_geodesics().then(|| Realisation::new(&diagram, metric, &mesh.triangles));
+    let curved = args.outputs.have_geodesics().then(|| Realisation::new(&diagram, &mesh.triangles));
     Ok(pictures::layers(&args.outputs, &diagram, metric, curved.as_ref()))
 }
 
@@ -345,19 +345,20 @@ fn on_surface(args: &MeshArgs, world: &World, input: Manifold, mended: &Mended, 
     };
     let made_for = Finer { field: metric.as_ref(), surface: input.surface(), logs: &meshed.finer };
     let is_told = world.tells(&args.run) || args.outputs.picture.is_some();
-    let (mut report, unmet) = account::on_surface(&meshed, input, mended, &made_for, used, is_told)?;
+    let scaled = Scaled { field: &made_for, factor: meshed.metric_scale };
+    let on = Riemannian::from((input, &scaled));
+    let (mut report, unmet) = account::of(&meshed, on, mended, used, is_told)?;
     if args.in_parts.parts.is_some() {
         // As in the plane.
         (report.dual, report.relaxation) = (None, None);
     }
     report.interpolation = interpolated(args, input, &meshed.mesh)?;
-    let scaled = Scaled { field: &made_for, factor: meshed.metric_scale };
     report.seconds.total = world.seconds() - start;
     let drawn = whole.as_ref().filter(|_| args.outputs.picture.is_some());
     let picture = drawn.map(|whole| drawn_on(args, world, whole, &meshed, &unmet)).transpose()?;
-    report.histograms = files::histograms_on(&args.outputs, &meshed.mesh, input, &scaled)?;
+    report.histograms = files::histograms(&args.outputs, &meshed.mesh, on)?;
     let sheet = pages::of(&args.paged, &args.out, &meshed.mesh, |sheet| {
-        pages::measured_on_surface(sheet, input, &scaled, true)?;
+        pages::measured(sheet, on, true)?;
         let (Some(whole), Some(drawn)) = (&whole, args.drawn()) else { return Ok(()) };
         let at = GradedAt::Scale(meshed.metric_scale);
         let field = fields::on_surface(world, &args.metric, whole, &args.metric_choices, at)?;
@@ -405,6 +406,6 @@ fn drawn_on(args: &MeshArgs, world: &World, whole: &Manifold, meshed: &Meshed, u
     let size = canvas::size_for(places.len(), args.canvas_size);
     let (canvas, at) = Canvas::on_surface(args.canvas, whole, metric.as_ref(), size, &places)?;
     let diagram = SurfaceDiagram::of_kind_on_surface(Kind::Riemannian, &canvas, &at, Method::March)?;
-    let curved = args.outputs.have_geodesics().then(|| Realisation::on_surface(&diagram, &mesh.triangles));
+    let curved = args.outputs.have_geodesics().then(|| recipe::Measured::realisation(&diagram, &mesh.triangles));
     pictures::on_surface(&args.outputs, &diagram, mesh, curved.as_ref())
 }

@@ -8,12 +8,12 @@ use voronaut::canvas::{self, Canvas};
 use voronaut::diagram::{Diagram, Ground, Kind, SurfaceDiagram};
 use voronaut::geodesic::Method;
 use voronaut::geometry::{Point, Point3};
-use voronaut::manifold::Manifold;
 use voronaut::manifold::domain::Domain;
 use voronaut::manifold::surface::metric::SurfaceMetric;
+use voronaut::manifold::{Manifold, Riemannian};
 use voronaut::mesh::{Mesh, SolutionValues};
 use voronaut::metric::MetricField;
-use voronaut::quality::{Unmet, surface_unmet, unmet};
+use voronaut::quality::unmet;
 use voronaut::realisation::Realisation;
 use voronaut_draw::Sheet;
 use voronaut_io::{Field, Fields};
@@ -63,43 +63,27 @@ fn numbers(Field { name, values }: Field) -> Vec<(String, Vec<f64>)> {
     all
 }
 
-/// Adds a metric, and what a planar mesh is in it, if it is a mesh.
-pub(crate) fn measured_in_plane(sheet: &mut Sheet, metric: &dyn MetricField, is_valid: bool) -> Result<()> {
-    let tensor = |&[x, y, _]: &[f64; 3]| {
-        let m = metric.at(Point::new(x, y));
-        [m.xx, m.xy, m.yy, 0.0, 0.0, 0.0]
+/// Adds a metric, and what a mesh is in it, if it is one; far from a surface there is none. Shapes of triangles are added, and edges that are not of unit
+/// length.
+pub(crate) fn measured(sheet: &mut Sheet, on: Riemannian, is_valid: bool) -> Result<()> {
+    let tensor = |&[x, y, z]: &[f64; 3]| match on {
+        Riemannian::Plane(metric) => {
+            let m = metric.at(Point::new(x, y));
+            [m.xx, m.xy, m.yy, 0.0, 0.0, 0.0]
+        }
+        Riemannian::Surface(manifold, metric) => {
+            manifold.closest(Point3::new(x, y, z)).map_or([f64::NAN; 6], |place| metric.at(&place).to_disk())
+        }
     };
     sheet.tensors = sheet.mesh.points.iter().map(tensor).collect();
     if is_valid {
-        judged(sheet, |mesh, see| unmet(mesh, metric, see))?;
+        let (mut qualities, mut angles) = (Vec::new(), Vec::new());
+        sheet.unmet = Some(unmet(&sheet.mesh, on, |[quality, angle]| {
+            qualities.push(quality);
+            angles.push(angle);
+        })?);
+        sheet.triangles.extend([("quality".into(), qualities), ("smallest angle".into(), angles)]);
     }
-    Ok(())
-}
-
-/// Adds a metric, and what the mesh of a surface is in it, if it is a mesh; far from the surface there is none.
-pub(crate) fn measured_on_surface(
-    sheet: &mut Sheet,
-    input: &Manifold,
-    metric: &dyn SurfaceMetric,
-    is_valid: bool,
-) -> Result<()> {
-    let tensor = |&p: &[f64; 3]| input.closest(p.into()).map_or([f64::NAN; 6], |place| metric.at(&place).to_disk());
-    sheet.tensors = sheet.mesh.points.iter().map(tensor).collect();
-    if is_valid {
-        judged(sheet, |mesh, see| surface_unmet(mesh, input, metric, see))?;
-    }
-    Ok(())
-}
-
-/// Adds the shapes of triangles, and edges that are not of unit length.
-fn judged(sheet: &mut Sheet, judge: impl FnOnce(&Mesh, &mut dyn FnMut([f64; 2])) -> Result<Unmet>) -> Result<()> {
-    let (mut qualities, mut angles) = (Vec::new(), Vec::new());
-    let see = &mut |[quality, angle]: [f64; 2]| {
-        qualities.push(quality);
-        angles.push(angle);
-    };
-    sheet.unmet = Some(judge(&sheet.mesh, see)?);
-    sheet.triangles.extend([("quality".into(), qualities), ("smallest angle".into(), angles)]);
     Ok(())
 }
 
@@ -108,7 +92,7 @@ pub(crate) fn with_cells(sheet: &mut Sheet, domain: &Domain, metric: &dyn Metric
     let seeds: Vec<Point> = sheet.mesh.points.iter().map(|p| Point::new(p[0], p[1])).collect();
     let canvas = Canvas::new(drawn.kind, domain.planar(), metric, (drawn.size as usize).saturating_mul(seeds.len()))?;
     let diagram = Diagram::new(&canvas, metric, &seeds)?;
-    let curved = Realisation::new(&diagram, metric, &sheet.mesh.triangles);
+    let curved = Realisation::new(&diagram, &sheet.mesh.triangles);
     show_diagram(sheet, &diagram, &curved);
     Ok(())
 }
@@ -135,7 +119,7 @@ pub(crate) fn with_cells_on(
     let size = canvas::size_for(places.len(), drawn.size);
     let (canvas, at) = Canvas::on_surface(drawn.kind, whole, metric, size, &places)?;
     let diagram = SurfaceDiagram::of_kind_on_surface(Kind::Riemannian, &canvas, &at, Method::March)?;
-    let curved = Realisation::on_surface(&diagram, &sheet.mesh.triangles);
+    let curved = voronaut::recipe::Measured::realisation(&diagram, &sheet.mesh.triangles);
     show_diagram(sheet, &diagram, &curved);
     Ok(())
 }

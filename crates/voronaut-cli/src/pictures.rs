@@ -92,7 +92,7 @@ pub(crate) fn on_surface(
         scene = scene.with(found.edges.iter().map(|edge| edge.points.clone()), Stroke::Geodesic);
         if outputs.shows(Show::Triangles) {
             let grids = found.grids_on_surface(diagram, PIECES);
-            let input = diagram.canvas().draped().input();
+            let input = diagram.canvas().draped().manifold();
             let lines = grids.iter().flatten().flat_map(Grid::lines).map(|line| along(input, &line));
             scene = scene.with(lines, Stroke::Level);
         }
@@ -100,7 +100,7 @@ pub(crate) fn on_surface(
         let edges = Edges::of(&mesh.triangles);
         scene = scene.with(edges.ends().map(|ends| ends.map(|v| mesh.position(v)).to_vec()), Stroke::Edge);
     }
-    let view = View { pixels: outputs.pixels, ..View::of(diagram.canvas().draped().input().bounds()) };
+    let view = View { pixels: outputs.pixels, ..View::of(diagram.canvas().draped().manifold().bounds()) };
     voronaut_draw::draw_surface(&scene, &view)
 }
 

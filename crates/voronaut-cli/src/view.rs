@@ -157,7 +157,7 @@ fn in_plane(args: &ViewArgs, world: &World, sheet: &mut Sheet, text: &str, path:
     let scale = args.metric_scale.unwrap_or(1.0);
     let choices = args.metric_choices.of_degree(curves::order_of(&sheet.mesh));
     let metric = fields::measuring(world, text, domain, &own, &choices, scale)?;
-    pages::measured_in_plane(sheet, metric.as_ref(), true)?;
+    pages::measured(sheet, metric.as_ref().into(), true)?;
     args.drawn().map_or(Ok(()), |drawn| pages::with_cells(sheet, domain, metric.as_ref(), drawn))
 }
 
@@ -170,5 +170,6 @@ fn on_surface(args: &ViewArgs, world: &World, sheet: &mut Sheet, text: &str, who
         pages::with_cells_on(sheet, &whole, &Scaled { field: field(&whole)?.as_ref(), factor }, drawn)?;
     }
     let input = whole.cut(&args.creases.options())?;
-    pages::measured_on_surface(sheet, &input, &Scaled { field: field(&input)?.as_ref(), factor }, true)
+    let field = field(&input)?;
+    pages::measured(sheet, (&input, &Scaled { field: field.as_ref(), factor }).into(), true)
 }

@@ -92,14 +92,14 @@ fn table(scene: &Scene, counts: &[&str]) -> Outcome<()> {
         for (name, seeds) in [("relaxed", scene.relaxed(count)?), ("random", random(&canvas, count))] {
             for kind in [Kind::LabelleShewchuk, Kind::DuWang, Kind::Riemannian] {
                 let begin = format!("| {} | {} {name} | {kind}", scene.name, seeds.len());
-                rows(&begin, &Diagram::of_kind(kind, &canvas, scene.field(), &seeds, Method::March)?, scene.field());
+                rows(&begin, &Diagram::of_kind(kind, &canvas, scene.field(), &seeds, Method::March)?);
             }
         }
     }
     Ok(())
 }
 
-fn rows(begin: &str, diagram: &Diagram, field: &dyn MetricField) {
+fn rows(begin: &str, diagram: &Diagram) {
     let orphans = diagram.orphan_components();
     let orphans = format!("{} | {}", orphans.len(), orphans.concat().len());
     let row = |what: &str, triangles: &[[u32; 3]], open: &str| {
@@ -110,9 +110,9 @@ fn rows(begin: &str, diagram: &Diagram, field: &dyn MetricField) {
     if diagram.kind() != Kind::Riemannian {
         return row("", &nerve, "");
     }
-    let settled = recipe::dual(diagram, field, Road::default(), &Silent).triangles;
+    let settled = recipe::dual(diagram, Road::default(), &Silent).triangles;
     for (what, triangles) in [("", nerve), (", settled", settled)] {
-        row(what, &triangles, &Realisation::new(diagram, field, &triangles).open().to_string());
+        row(what, &triangles, &Realisation::new(diagram, &triangles).open().to_string());
     }
 }
 

@@ -20,7 +20,7 @@ fn main() -> voronaut::Result<()> {
     let metric = Swirl::default();
     let canvas = Canvas::intrinsic(square.planar(), &metric, size_for(seeds.len(), 60))?;
     let diagram = Diagram::new(&canvas, &metric, &seeds)?;
-    let dual = recipe::dual(&diagram, &metric, Road::Both, &Silent);
+    let dual = recipe::dual(&diagram, Road::Both, &Silent);
     let (triangles, account) = (dual.triangles.len(), &dual.account);
     println!("{triangles} triangles, {} uncertain edges, least margin {:.3}", account.uncertain, account.min_margin);
     for [a, b, c] in dual.triangles.iter().take(5) {

@@ -11,10 +11,10 @@ use crate::{account, summary};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use voronaut::Result;
-use voronaut::manifold::Manifold;
 use voronaut::manifold::domain::{Keep, RemeshInput};
 use voronaut::manifold::surface::Mended;
-use voronaut::manifold::surface::metric::{Finer, Sizing};
+use voronaut::manifold::surface::metric::{Finer, Scaled, Sizing};
+use voronaut::manifold::{Manifold, Riemannian};
 use voronaut::mesh::{Mesh, Solution};
 use voronaut::progress::Progress;
 use voronaut::quality::fidelity;
@@ -82,7 +82,7 @@ fn in_plane(
     let used = as_used(args, &sizing, metric_file.as_deref());
     let is_told = world.tells(&args.run());
     let (measured, (strayed, solution)) = rayon::join(
-        || account::in_plane(&meshed, &field, used, is_told),
+        || account::of(&meshed, Riemannian::from(&field), &Mended::default(), used, is_told),
         || (fidelity(&meshed.mesh, &input.domain.boundary()), sizes.solution(&field, &meshed.mesh.points)),
     );
     let (mut report, _) = measured?;
@@ -112,7 +112,8 @@ fn on_surface(args: &RemeshArgs, world: &World, input: Manifold, mended: &Mended
     let meshed = recipe::mesh_surface(&input, &field, None, &options, bar)?;
     let used = as_used(args, &sizing, metric_file.as_deref());
     let field = Finer { field: &field, surface: input.surface(), logs: &meshed.finer };
-    let (report, _) = account::on_surface(&meshed, &input, mended, &field, used, world.tells(&args.run()))?;
+    let scaled = Scaled { field: &field, factor: meshed.metric_scale };
+    let (report, _) = account::of(&meshed, (&input, &scaled).into(), mended, used, world.tells(&args.run()))?;
     let solution = sizes.solution(&field, meshed.metric_scale, input.surface(), &meshed.mesh.points)?;
     Ok(Made { mesh: meshed.mesh, report, solution })
 }

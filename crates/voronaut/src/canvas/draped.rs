@@ -31,7 +31,7 @@ const FLAT: f64 = 1e-9;
 /// A triangulation draped over a surface, with its metric. Faces are labelled with the number of the input's triangle that they lie in.
 #[derive(Clone)]
 pub struct Draped<'s> {
-    pub(super) input: &'s Manifold,
+    pub(super) manifold: &'s Manifold,
     pub(super) metric: &'s dyn SurfaceMetric,
     pub(super) topology: Triangulation,
     places: Vec<Place>,
@@ -63,24 +63,24 @@ impl<'s> Draped<'s> {
     ///
     /// # Errors
     /// [`Error::Metric`] where the metric is not positive definite at a vertex.
-    pub(super) fn new(input: &'s Manifold, metric: &'s dyn SurfaceMetric) -> Result<Self> {
-        let mut topology = input.topology().clone();
+    pub(super) fn new(manifold: &'s Manifold, metric: &'s dyn SurfaceMetric) -> Result<Self> {
+        let mut topology = manifold.topology().clone();
         for f in topology.faces().collect::<Vec<_>>() {
             topology.set_region(f, f.0.cast_signed());
         }
         let slots = topology.vertex_slots() as u32;
         let place = |v: u32| {
-            let place = input.place_of(VertexId(v))?;
+            let place = manifold.place_of(VertexId(v))?;
             // On an equation's surface its normal counts.
-            Some(if input.equation().is_some() { input.lift(&place, place.position)? } else { place })
+            Some(if manifold.equation().is_some() { manifold.lift(&place, place.position)? } else { place })
         };
-        let unused = input.place(topology.faces().next().expect("a surface has triangles"), [1.0, 0.0, 0.0]);
+        let unused = manifold.place(topology.faces().next().expect("a surface has triangles"), [1.0, 0.0, 0.0]);
         let places: Vec<Place> = (0..slots).into_par_iter().map(|v| place(v).unwrap_or(unused)).collect();
         let tensors: Vec<Tensor3> = places.par_iter().with_min_len(256).map(|place| metric.at(place)).collect();
         for v in topology.vertices() {
             check_tensor3(tensors[v.index()], || places[v.index()].position.to_string())?;
         }
-        Ok(Self { input, metric, topology, places, tensors })
+        Ok(Self { manifold, metric, topology, places, tensors })
     }
 
     /// Halves the largest edge, again and again, until there are so many vertices. Edges are then to be measured.
@@ -180,7 +180,7 @@ impl<'s> Draped<'s> {
     /// Makes a place at the border of an equation's surface a vertex there: it is on the equation, and so beside the edges that
     /// the border has here. `None` of any other place.
     fn insert_on_border(&mut self, seed: &Place, at_home: &Homes) -> Result<Option<VertexId>> {
-        if self.input.equation().is_none() || !self.input.is_at_border(seed, 0.0) {
+        if self.manifold.equation().is_none() || !self.manifold.is_at_border(seed, 0.0) {
             return Ok(None);
         }
         let faces = at_home.get(&seed.face).into_iter().flatten();
@@ -205,11 +205,11 @@ impl<'s> Draped<'s> {
 
     /// The input's triangles in which a place of one of them may be: on an equation's surface those around it, too.
     fn homes_around(&self, home: FaceId) -> Vec<FaceId> {
-        if self.input.equation().is_none() {
+        if self.manifold.equation().is_none() {
             return vec![home];
         }
-        let input = self.input.topology();
-        distinct(input.corners(home).into_iter().flat_map(|v| input.star(v)).map(HalfEdge::face))
+        let own = self.manifold.topology();
+        distinct(own.corners(home).into_iter().flat_map(|v| own.star(v)).map(HalfEdge::face))
     }
 
     /// The distance of a point to a face, with the weights of the closest one; on a plane face that holds it zero but for
@@ -218,7 +218,7 @@ impl<'s> Draped<'s> {
         let corners = self.topology.corners(f).map(|v| self.position(v));
         let weights = crate::manifold::surface::closest_weights(corners, p);
         let distance = Point3::weighted(corners, weights).distance(p);
-        (if distance < 1e-13 * self.input.diagonal() { 0.0 } else { distance }, weights)
+        (if distance < 1e-13 * self.manifold.diagonal() { 0.0 } else { distance }, weights)
     }
 
     fn insert_in(&mut self, f: FaceId, weights: [f64; 3], seed: Place) -> Result<VertexId> {
@@ -256,9 +256,9 @@ impl<'s> Draped<'s> {
     fn middle(&self, h: HalfEdge) -> Option<Place> {
         let [a, b] = self.topology.ends(h);
         let p = self.position(a).lerp(self.position(b), 0.5);
-        match self.input.equation() {
-            Some(_) => self.input.lift(&self.places[a.index()], p),
-            None => Some(Place { position: p, ..self.input.closest_on(self.home(h.face()), p) }),
+        match self.manifold.equation() {
+            Some(_) => self.manifold.lift(&self.places[a.index()], p),
+            None => Some(Place { position: p, ..self.manifold.closest_on(self.home(h.face()), p) }),
         }
     }
 
@@ -294,7 +294,7 @@ impl<'s> Draped<'s> {
         let ends = self.topology.ends(h);
         let [p, q] = ends.map(|v| &self.places[v.index()]);
         let tensors = ends.map(|v| self.tensors[v.index()]);
-        let chord = self.input.chord([p, q], tensors);
+        let chord = self.manifold.chord([p, q], tensors);
         if chord.spread < ALIKE {
             return chord.simpson([tensors[0], tensors[1]]);
         }
@@ -304,7 +304,7 @@ impl<'s> Draped<'s> {
         if chord.spread < UNLIKE || along == Along::Straight {
             return simpson;
         }
-        let chart = Chart::new(self.input, self.metric, place, chord.up.unit().unwrap_or(place.normal));
+        let chart = Chart::new(self.manifold, self.metric, place, chord.up.unit().unwrap_or(place.normal));
         let [flat_p, flat_q] = [p, q].map(|end| chart.flatten(end.position));
         let bowed = bowed_between(&chart, [flat_p, flat_q], [p, q].map(|end| chart.tensor(end)));
         // A way that is much shorter than the edge leaves its surroundings: the metric is not resolved there.
@@ -316,17 +316,17 @@ impl<'s> Draped<'s> {
         if places[0].position == places[1].position {
             return 0.0;
         }
-        self.input.chord(places, tensors).simpson(tensors)
+        self.manifold.chord(places, tensors).simpson(tensors)
     }
 
     /// The tangent plane at a vertex, of a surface of triangles that of the mean normal.
     pub(crate) fn plane(&self, v: VertexId) -> TangentPlane {
-        TangentPlane::new(self.input.normal(&self.places[v.index()]))
+        TangentPlane::new(self.manifold.normal(&self.places[v.index()]))
     }
 
     /// The surface.
-    pub fn input(&self) -> &'s Manifold {
-        self.input
+    pub fn manifold(&self) -> &'s Manifold {
+        self.manifold
     }
 
     /// Its metric.

@@ -23,13 +23,13 @@ impl<'s> Canvas<Draped<'s>> {
     /// are one.
     pub fn on_surface(
         kind: Kind,
-        input: &'s Manifold,
+        manifold: &'s Manifold,
         metric: &'s dyn SurfaceMetric,
         vertices: usize,
         seeds: &[Place],
     ) -> Result<(Self, Vec<VertexId>)> {
         let mut counters = CanvasCounters::default();
-        let mut draped = Draped::new(input, metric)?;
+        let mut draped = Draped::new(manifold, metric)?;
         let size = if kind == Kind::Isotropic { Size::Isotropic } else { Size::Metric };
         draped.refine(size, vertices.saturating_sub(seeds.len()), &mut counters)?;
         let at = draped.insert_all(seeds)?;
@@ -87,11 +87,11 @@ fn spread(cell: u32) -> u32 {
 /// # Errors
 /// [`Error::Metric`](crate::Error::Metric) where the metric is not positive definite at a vertex.
 pub(crate) fn even_on_surface<'s>(
-    input: &'s Manifold,
+    manifold: &'s Manifold,
     metric: &'s dyn SurfaceMetric,
     vertices: usize,
 ) -> Result<Draped<'s>> {
-    let mut draped = Draped::new(input, metric)?;
+    let mut draped = Draped::new(manifold, metric)?;
     draped.refine(Size::Metric, vertices, &mut CanvasCounters::default())?;
     Ok(draped)
 }

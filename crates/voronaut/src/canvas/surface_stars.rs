@@ -161,17 +161,18 @@ mod tests {
     }
 
     /// Places of a slope that follow no pattern.
-    fn scattered(input: &Manifold) -> Vec<crate::manifold::Place> {
+    fn scattered(manifold: &Manifold) -> Vec<crate::manifold::Place> {
         let at = |i: u32| ((0.618 * f64::from(i)).fract(), (0.754_877 * f64::from(i)).fract());
-        (1..300).map(at).map(|(x, y)| input.closest(Point3::new(x, y, -x)).unwrap()).collect()
+        (1..300).map(at).map(|(x, y)| manifold.closest(Point3::new(x, y, -x)).unwrap()).collect()
     }
 
     #[test]
     fn stars_of_a_flat_surface_agree_and_are_delaunay() {
-        let input = slope();
+        let manifold = slope();
         // The second metric is three times as long across the slope.
         for metric in [UNIFORM, Constant(Tensor3 { yy: 9.0, ..Tensor3::IDENTITY })] {
-            let (canvas, _) = Canvas::on_surface(Kind::StarSet, &input, &metric, 600, &scattered(&input)).unwrap();
+            let (canvas, _) =
+                Canvas::on_surface(Kind::StarSet, &manifold, &metric, 600, &scattered(&manifold)).unwrap();
             let stars = canvas.stars().unwrap();
             assert_eq!(stars.figures().unsettled, 0);
             // As it lies in the plane of the metric; circles at the border reach farther than the rings.
@@ -196,8 +197,8 @@ mod tests {
 
     #[test]
     fn edges_of_stars_are_as_long_as_arcs_over_them() {
-        let input = Manifold::shape("sphere:1", None).unwrap();
-        let (canvas, _) = Canvas::on_surface(Kind::StarSet, &input, &UNIFORM, 4000, &[]).unwrap();
+        let manifold = Manifold::shape("sphere:1", None).unwrap();
+        let (canvas, _) = Canvas::on_surface(Kind::StarSet, &manifold, &UNIFORM, 4000, &[]).unwrap();
         let (graph, draped) = (canvas.surface_graph(), canvas.draped());
         let mut worst: f64 = 0.0;
         for v in graph.vertices() {
@@ -212,8 +213,8 @@ mod tests {
 
     #[test]
     fn vertices_see_each_other_by_rotations() {
-        let input = Manifold::shape("sphere:1", None).unwrap();
-        let (canvas, _) = Canvas::on_surface(Kind::StarSet, &input, &UNIFORM, 2_000, &[]).unwrap();
+        let manifold = Manifold::shape("sphere:1", None).unwrap();
+        let (canvas, _) = Canvas::on_surface(Kind::StarSet, &manifold, &UNIFORM, 2_000, &[]).unwrap();
         let (graph, draped) = (canvas.surface_graph(), canvas.draped());
         let sight = graph.sight();
         for v in graph.vertices() {

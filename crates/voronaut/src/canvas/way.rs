@@ -29,7 +29,7 @@ impl Draped<'_> {
         let on: Vec<([VertexId; 2], f64)> =
             [([from, from], 0.0)].into_iter().chain(inner).chain([([to, to], 0.0)]).collect();
         let way = self.way_along(on)?;
-        let is_exact = self.input().equation().is_none();
+        let is_exact = self.manifold().equation().is_none();
         Some(if is_exact { Way { length: found.length, ..way } } else { way })
     }
 
@@ -42,11 +42,11 @@ impl Draped<'_> {
                 return Some(*self.place(a));
             }
             let p = self.position(a).lerp(self.position(b), t);
-            if self.input().equation().is_some() {
-                return self.input().lift(self.place(a), p);
+            if self.manifold().equation().is_some() {
+                return self.manifold().lift(self.place(a), p);
             }
             let h = self.topology().edge_between(a, b)?;
-            Some(self.input().closest_on(self.home(h.face()), p))
+            Some(self.manifold().closest_on(self.home(h.face()), p))
         };
         let places: Vec<Place> = on.iter().map(place).collect::<Option<_>>()?;
         let tensors: Vec<Tensor3> = places.iter().map(|place| self.metric().at(place)).collect();
@@ -87,11 +87,11 @@ mod tests {
 
     #[test]
     fn ways_on_a_folded_strip_are_straight_unfolded() {
-        let (input, metric) = (folded(), Constant(Tensor3::IDENTITY));
+        let (manifold, metric) = (folded(), Constant(Tensor3::IDENTITY));
         let unfolded = |p: Point3| Point::new(p.x / 0.6, p.y);
         let seeds = [(0.1, 0.2), (1.1, 0.9), (0.7, 0.05)]
-            .map(|(x, y): (f64, f64)| input.closest(Point3::new(x, y, 0.8 - (0.8 - x * 4.0 / 3.0).abs())).unwrap());
-        let (canvas, at) = Canvas::on_surface(Kind::Intrinsic, &input, &metric, 500, &seeds).unwrap();
+            .map(|(x, y): (f64, f64)| manifold.closest(Point3::new(x, y, 0.8 - (0.8 - x * 4.0 / 3.0).abs())).unwrap());
+        let (canvas, at) = Canvas::on_surface(Kind::Intrinsic, &manifold, &metric, 500, &seeds).unwrap();
         let draped = canvas.draped();
         for (i, j) in [(0, 1), (1, 2), (2, 0)] {
             let way = draped.geodesic(at[i], at[j]).unwrap();
@@ -114,12 +114,12 @@ mod tests {
 
     #[test]
     fn ways_on_a_sphere_are_great_circles() {
-        let (input, metric) = (Manifold::shape("sphere:1", None).unwrap(), Constant(Tensor3::IDENTITY));
+        let (manifold, metric) = (Manifold::shape("sphere:1", None).unwrap(), Constant(Tensor3::IDENTITY));
         let seeds = [(1.0, 0.3, 0.2), (-0.4, 0.9, 0.1), (0.2, -0.5, -1.0)].map(|(x, y, z)| {
             let p = Point3::default() + (Point3::new(x, y, z) - Point3::default()).unit().unwrap();
-            input.closest(p).unwrap()
+            manifold.closest(p).unwrap()
         });
-        let (canvas, at) = Canvas::on_surface(Kind::Intrinsic, &input, &metric, 8000, &seeds).unwrap();
+        let (canvas, at) = Canvas::on_surface(Kind::Intrinsic, &manifold, &metric, 8000, &seeds).unwrap();
         for (i, j) in [(0, 1), (1, 2), (2, 0)] {
             let way = canvas.draped().geodesic(at[i], at[j]).unwrap();
             let exact = 2.0 * (0.5 * seeds[i].position.distance(seeds[j].position)).asin();

@@ -104,7 +104,7 @@ pub struct Cell {
 impl Certificate {
     /// Certifies a diagram on a canvas that is a triangulation. `net` is that of its seeds, with epsilon that of the
     /// whole domain, from the triangles of the exact dual (`recipe::net`).
-    pub fn new(diagram: &Diagram, exact: &[[u32; 3]], net: &Net, constants: Constants) -> Self {
+    pub(crate) fn new(diagram: &Diagram, exact: &[[u32; 3]], net: &Net, constants: Constants) -> Self {
         let disks = |coverage: &Coverage, epsilon: f64| convexity::convexity(diagram, net, coverage, epsilon);
         Self::of(diagram, diagram, exact, net, constants, disks, Evidence::verdicts)
     }

@@ -21,10 +21,15 @@ const SOURCES: usize = 256;
 const RING: usize = 3;
 
 impl Certificate {
-    /// Certifies a diagram on a surface, as [`Certificate::new`] does in the plane; `net` is that of its seeds (`recipe::surface_net`).
+    /// Certifies a diagram on a surface, as [`Certificate::new`] does in the plane; `net` is that of its seeds (`recipe::net`).
     /// Around each seed the surface is seen in a chart. Convex disks are known on closed surfaces that have an equation only: triangles
     /// have no curvature but at their vertices.
-    pub fn on_surface(diagram: &SurfaceDiagram, exact: &[[u32; 3]], net: &Net<Place>, constants: Constants) -> Self {
+    pub(crate) fn on_surface(
+        diagram: &SurfaceDiagram,
+        exact: &[[u32; 3]],
+        net: &Net<Place>,
+        constants: Constants,
+    ) -> Self {
         let sights = OnSurface::new(diagram);
         let disks = |_: &Coverage, epsilon: f64| convexity(diagram, &sights, net, epsilon);
         Self::of(diagram, &sights, exact, net, constants, disks, Evidence::on_surface)
@@ -32,14 +37,14 @@ impl Certificate {
 }
 
 fn convexity(diagram: &SurfaceDiagram, sights: &OnSurface, net: &Net<Place>, epsilon: f64) -> Convexity {
-    let input = diagram.canvas().draped().input();
+    let manifold = diagram.canvas().draped().manifold();
     let [curvature, total] = curvatures(diagram.canvas().draped(), epsilon);
-    let has_border = input.whole().borders > 0;
+    let has_border = manifold.whole().borders > 0;
     let injectivity = if has_border { f64::NAN } else { injectivity(diagram, epsilon) };
     let of_curvature = if curvature > 0.0 { 0.5 * PI / curvature.sqrt() } else { f64::INFINITY };
     let open = match () {
         () if has_border => Some("the surface has a border, where loops are not looked for"),
-        () if input.equation().is_none() => {
+        () if manifold.equation().is_none() => {
             Some("the curvature: the surface has no equation, and its triangles have it at their vertices only")
         }
         () => None,
@@ -59,7 +64,7 @@ fn convexity(diagram: &SurfaceDiagram, sights: &OnSurface, net: &Net<Place>, eps
 /// The greatest Gauss curvature at samples, and the integral of the positive ones. `unit` is a length of the metric, over a few hundredths
 /// of which differences are taken.
 fn curvatures(draped: &Draped, unit: f64) -> [f64; 2] {
-    if draped.input().equation().is_none() {
+    if draped.manifold().equation().is_none() {
         return [f64::NAN; 2];
     }
     let t = draped.topology();
@@ -69,7 +74,7 @@ fn curvatures(draped: &Draped, unit: f64) -> [f64; 2] {
     let factor = unit.powi(-2);
     let at = |&v: &VertexId| {
         let plane = draped.plane(v);
-        let chart = Chart::in_plane(draped.input(), draped.metric(), *draped.place(v), plane);
+        let chart = Chart::in_plane(draped.manifold(), draped.metric(), *draped.place(v), plane);
         // A third of the faces around a vertex is its share of the area.
         let double = |h: HalfEdge| {
             let [a, b, c] = t.corners(h.face()).map(|v| draped.position(v));

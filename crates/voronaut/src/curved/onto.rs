@@ -17,11 +17,11 @@ const BARRED: i32 = 5;
 /// they slide ([`Sliding`]). Nodes of an edge on the border keep the coordinates that its ends have in common. Where a triangle would fold, seen along its
 /// normal, or the surface is not found, nodes stay nearer to the straight one; returns how many do, and where the first is. The distance to the surface is
 /// of order `order + 1` in the length of edges, and `order + 2` where it bends along them.
-pub(crate) fn onto_surface(mesh: &mut Mesh, input: &Manifold, order: usize) -> Option<(usize, Point3)> {
+pub(crate) fn onto_surface(mesh: &mut Mesh, manifold: &Manifold, order: usize) -> Option<(usize, Point3)> {
     let (straight, pins, triangles) = straight_nodes(mesh, order);
     let mut landed: Vec<Option<Point3>> =
-        (0..straight.len()).into_par_iter().map(|n| input.onto(straight[n], pins[n])).collect();
-    Sliding { mesh, input, order, triangles: &triangles, pins: &pins }.slide(&mut landed);
+        (0..straight.len()).into_par_iter().map(|n| manifold.onto(straight[n], pins[n])).collect();
+    Sliding { mesh, manifold, order, triangles: &triangles, pins: &pins }.slide(&mut landed);
     let mut halved: Vec<i32> = landed.iter().map(|p| if p.is_some() { 0 } else { BARRED }).collect();
     let place = |n: usize, halved: i32| match landed[n] {
         Some(p) if halved < BARRED => straight[n].lerp(p, 0.5_f64.powi(halved)),

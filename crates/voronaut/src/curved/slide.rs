@@ -22,7 +22,7 @@ const SHARE: f64 = 0.1;
 /// The triangles whose nodes slide.
 pub(super) struct Sliding<'a> {
     pub(super) mesh: &'a Mesh,
-    pub(super) input: &'a Manifold,
+    pub(super) manifold: &'a Manifold,
     pub(super) order: usize,
     /// The numbers of each triangle's nodes, one triangle after the other.
     pub(super) triangles: &'a [u32],
@@ -71,7 +71,7 @@ impl Sliding<'_> {
                 let (from, [u, v]) = (nodes[n]?, tangents[n]);
                 let way = u * step[2 * n] + v * step[2 * n + 1];
                 let share = (springs[n].reach / way.norm()).min(1.0);
-                self.input.onto(from + way * share, self.pins[n]).or(Some(from))
+                self.manifold.onto(from + way * share, self.pins[n]).or(Some(from))
             };
             let moved: Vec<Option<Point3>> = (0..nodes.len()).into_par_iter().map(moved).collect();
             let tangents_there = self.tangents(&moved);
@@ -110,7 +110,7 @@ impl Sliding<'_> {
 
     /// The distance to the surface, to first order, and its gradient.
     fn normal(&self, p: Point3) -> Option<(f64, Vector3)> {
-        let jet = self.input.equation()?.jet(p);
+        let jet = self.manifold.equation()?.jet(p);
         let (distance, normal) = (jet.value / jet.gradient.norm(), jet.gradient.unit()?);
         distance.is_finite().then_some((distance, normal))
     }

@@ -180,10 +180,11 @@ mod tests {
 
     #[test]
     fn on_a_surface_colours_are_those_of_all_pairs_compared() {
-        let input = Manifold::shape("sphere:1", None).unwrap();
+        let manifold = Manifold::shape("sphere:1", None).unwrap();
         let metric = |p: Point3| Tensor3::from_disk([9.0 + 8.0 * p.y, 1.0, 2.0, 0.0, p.x, 3.0]);
-        let places: Vec<_> = input.topology().vertices().step_by(9).map(|v| input.place_of(v).unwrap()).collect();
-        let (canvas, at) = Canvas::on_surface(crate::canvas::Kind::Intrinsic, &input, &metric, 3000, &places).unwrap();
+        let places: Vec<_> = manifold.topology().vertices().step_by(9).map(|v| manifold.place_of(v).unwrap()).collect();
+        let (canvas, at) =
+            Canvas::on_surface(crate::canvas::Kind::Intrinsic, &manifold, &metric, 3000, &places).unwrap();
         let frozen = |v: VertexId| (&canvas).frozen(v);
         for (kind, chords) in RIVALS {
             let diagram = SurfaceDiagram::of_kind_on_surface(kind, &canvas, &at, Method::March).unwrap();

@@ -160,7 +160,7 @@ impl<'a> Ground<'a> for &'a Canvas<Draped<'a>> {
     }
 
     fn region(&self, f: FaceId) -> i32 {
-        self.draped().input().topology().region(self.draped().home(f))
+        self.draped().manifold().topology().region(self.draped().home(f))
     }
 
     /// By its metric lengths, in which the metric is Euclidean.

@@ -31,7 +31,7 @@ const ALIKE: f64 = 1.5;
 
 /// The Riemannian Delaunay triangulation of seeds on a surface, with straight edges in space: the mesh in the making.
 pub(crate) struct SurfaceDual<'a> {
-    pub(super) input: &'a Manifold,
+    pub(super) manifold: &'a Manifold,
     pub(super) metric: &'a dyn SurfaceMetric,
     pub(super) factor: f64,
     pub(super) state: State,
@@ -46,21 +46,21 @@ impl<'a> SurfaceDual<'a> {
     /// # Errors
     /// [`Error::Metric`] where the metric is not positive definite at a seed.
     pub(crate) fn new(
-        input: &'a Manifold,
+        manifold: &'a Manifold,
         metric: &'a dyn SurfaceMetric,
         factor: f64,
         places: Vec<Place>,
         staying: usize,
         topology: Triangulation,
     ) -> Result<Self> {
-        let seen = |place: &Place| (TangentPlane::new(input.normal(place)), input.facing(place));
+        let seen = |place: &Place| (TangentPlane::new(manifold.normal(place)), manifold.facing(place));
         let (planes, facing) = places.par_iter().with_min_len(256).map(seen).unzip();
         let stays = |v: u32| (v as usize) < staying || topology.is_border_vertex(VertexId(v));
         let kind = |v: u32| if stays(v) { Kind::Corner(v) } else { Kind::Free };
         let kinds = (0..places.len() as u32).map(kind).collect();
         let (locals, measured) = (vec![LocalMetric::default(); places.len()], vec![Measured::default(); places.len()]);
         let mut dual = Self {
-            input,
+            manifold,
             metric,
             factor,
             state: State { topology, places, planes, facing, locals, measured, kinds },
@@ -82,8 +82,8 @@ impl<'a> SurfaceDual<'a> {
     }
 
     /// The surface.
-    pub(crate) fn input(&self) -> &'a Manifold {
-        self.input
+    pub(crate) fn manifold(&self) -> &'a Manifold {
+        self.manifold
     }
 
     /// Its metric, not scaled.
@@ -122,12 +122,12 @@ impl<'a> SurfaceDual<'a> {
         is_due: impl Fn(&LocalMetric, Vector) -> bool + Sync,
         measure: impl Fn(&LocalMetric, &Scaled, Tensor) -> LocalMetric + Sync,
     ) -> Result<()> {
-        let (input, metric, factor) = (self.input, self.metric, self.factor);
+        let (manifold, metric, factor) = (self.manifold, self.metric, self.factor);
         let State { places, planes, locals, measured, .. } = &mut self.state;
         let seeds = locals.par_iter_mut().zip(measured).zip(places.as_slice()).zip(planes.as_slice());
         seeds.with_min_len(64).for_each(|(((local, measured), at), plane)| {
             if is_due(local, plane.flatten(at.position - measured.at)) {
-                let (chart, tensor) = (Chart::in_plane(input, metric, *at, *plane), metric.at(at));
+                let (chart, tensor) = (Chart::in_plane(manifold, metric, *at, *plane), metric.at(at));
                 *local = measure(local, &Scaled { field: &chart, factor }, chart.seen(at, tensor) * factor);
                 *measured = Measured { at: at.position, tensor };
             }
@@ -144,7 +144,7 @@ impl<'a> SurfaceDual<'a> {
 
     /// Where a place is, seen from a seed.
     pub(crate) fn seen_from(&self, seed: VertexId, place: &Place) -> Vector {
-        self.seen(seed, place.position, self.input.normal(place))
+        self.seen(seed, place.position, self.manifold.normal(place))
     }
 
     /// In the direction of the projection, as long as the way along the surface.
@@ -164,7 +164,7 @@ impl<'a> SurfaceDual<'a> {
     /// Where a seed comes to lie that is moved by a vector of its tangent plane.
     pub(crate) fn place_after(&self, v: VertexId, by: Vector) -> Option<Place> {
         let (at, plane) = (self.state.places[v.index()], self.state.planes[v.index()]);
-        self.input.lift(&at, at.position + plane.lift(by))
+        self.manifold.lift(&at, at.position + plane.lift(by))
     }
 
     /// Moves a seed to a place near it, or as near to that as straight up from its tangent plane leads, and flips around it, unless a triangle would
@@ -223,7 +223,7 @@ impl<'a> SurfaceDual<'a> {
     /// Where a move leads a seed, unless the surface turns away.
     fn landing(&self, v: VertexId, by: Vector) -> Option<Landing> {
         let place = self.place_after(v, by)?;
-        let normal = self.input.normal(&place);
+        let normal = self.manifold.normal(&place);
         (normal.dot(self.state.planes[v.index()].normal) >= UPRIGHT).then_some(Landing { place, normal })
     }
 
@@ -284,7 +284,7 @@ impl<'a> SurfaceDual<'a> {
 
     /// A place with the metric there, scaled.
     fn site_of(&self, place: Place) -> SurfaceSite {
-        let normal = self.input().normal(&place);
+        let normal = self.manifold().normal(&place);
         let tensor = self.metric().at(&place) * self.factor();
         SurfaceSite { tensor, log: None, place: Place { normal, ..place } }
     }
@@ -449,7 +449,7 @@ impl Moving for SurfaceDual<'_> {
 
     fn settle_move(&mut self, v: VertexId) {
         let (at, plane) = (self.state.places[v.index()], self.state.planes[v.index()]);
-        let (chart, tensor) = (Chart::in_plane(self.input, self.metric, at, plane), self.metric.at(&at));
+        let (chart, tensor) = (Chart::in_plane(self.manifold, self.metric, at, plane), self.metric.at(&at));
         let (field, there) = (Scaled { field: &chart, factor: self.factor }, chart.seen(&at, tensor) * self.factor);
         let local = self.state.locals[v.index()].moved_to(&field, Point::default(), there);
         if local.tensor.is_positive_definite() {

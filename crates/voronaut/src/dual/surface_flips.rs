@@ -170,10 +170,10 @@ impl SurfaceDual<'_> {
         let [m, n] = ends.map(|w| self.state.planes[w.index()].normal);
         let (half, up) = (p.position.lerp(q.position, 0.5), (m + n).unit());
         // Straight above is found sooner than the closest point.
-        let above = up.and_then(|up| self.input.lift_along(p, half, up, UPRIGHT));
-        let middle = above.or_else(|| self.input.lift(p, half));
+        let above = up.and_then(|up| self.manifold.lift_along(p, half, up, UPRIGHT));
+        let middle = above.or_else(|| self.manifold.lift(p, half));
         let middle = middle.map_or(tensors, |place| [self.metric.at(&place); 2]);
-        self.input.chord([p, q], tensors).simpson(middle) * self.factor.sqrt()
+        self.manifold.chord([p, q], tensors).simpson(middle) * self.factor.sqrt()
     }
 
     pub(super) fn is_rough(&self, ends: [VertexId; 2]) -> bool {
@@ -278,13 +278,13 @@ mod tests {
     fn what_is_nearly_flat_is_rounded_off() {
         let corners = vec![[-3.0, -3.0, 0.0], [3.0, -3.0, 0.0], [3.0, 3.0, 0.0], [-3.0, 3.0, 0.0]];
         let sheet = Mesh { points: corners, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() };
-        let (input, metric) = (Manifold::of(&sheet).unwrap(), Constant(Tensor3::IDENTITY));
+        let (manifold, metric) = (Manifold::of(&sheet).unwrap(), Constant(Tensor3::IDENTITY));
         // The third is above the middle of the edge between the first two by next to nothing.
         let seeds = [(-1.0, 0.0), (1.0, 0.0), (0.0, 1e-6), (0.0, 2.0), (0.0, -2.0)];
-        let places = seeds.map(|(x, y)| input.closest(Point3::new(x, y, 0.0)).unwrap()).to_vec();
+        let places = seeds.map(|(x, y)| manifold.closest(Point3::new(x, y, 0.0)).unwrap()).to_vec();
         let triangles = [[0, 1, 2], [0, 2, 3], [2, 1, 3], [0, 4, 1]];
         let topology = Triangulation::from_triangles(5, &triangles, &[0; 4]);
-        let mut dual = SurfaceDual::new(&input, &metric, 1.0, places, 0, topology).unwrap();
+        let mut dual = SurfaceDual::new(&manifold, &metric, 1.0, places, 0, topology).unwrap();
         let mut round_off = || dual.round_off(dual.topology().edges().collect());
         assert_eq!((round_off(), round_off()), (1, 0));
         let least = dual.triangles().into_iter().map(|t| dual.quality(t.map(|v| dual.site(VertexId(v)))));
@@ -297,11 +297,11 @@ mod tests {
             [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]].map(|p| p.map(f64::from)).to_vec();
         let triangles = vec![[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
         let octahedron = Mesh { points, triangles, ..Mesh::default() };
-        let input = Manifold::of(&octahedron).unwrap();
-        let topology = input.topology().clone();
-        let places = topology.vertices().map(|v| input.place_of(v).unwrap()).collect();
+        let manifold = Manifold::of(&octahedron).unwrap();
+        let topology = manifold.topology().clone();
+        let places = topology.vertices().map(|v| manifold.place_of(v).unwrap()).collect();
         let metric = Constant(Tensor3::IDENTITY);
-        let mut dual = SurfaceDual::new(&input, &metric, 1.0, places, 0, topology).unwrap();
+        let mut dual = SurfaceDual::new(&manifold, &metric, 1.0, places, 0, topology).unwrap();
         // Each edge of the square 0 2 1 3 flips to an edge from 4 to 5.
         let by = |dual: &SurfaceDual, h: HalfEdge| {
             let flip = dual.flip_of(h)?;

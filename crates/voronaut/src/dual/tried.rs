@@ -101,13 +101,14 @@ mod tests {
 
     #[test]
     fn the_next_try_finds_what_it_would_find_alone_to_the_last_bit() {
-        let input = Manifold::new(sphere(1.0, 0.4).unwrap(), None);
+        let manifold = Manifold::new(sphere(1.0, 0.4).unwrap(), None);
         let size = |i: usize| if i.is_multiple_of(3) { 0.25 } else { 0.6 };
-        let metric = Sizes::Isotropic((0..input.positions().len()).map(size).collect()).field(input.surface()).unwrap();
+        let metric =
+            Sizes::Isotropic((0..manifold.positions().len()).map(size).collect()).field(manifold.surface()).unwrap();
         let made = || {
-            let topology = input.topology().clone();
-            let places = topology.vertices().map(|v| input.place_of(v).unwrap()).collect();
-            let mut dual = SurfaceDual::new(&input, &metric, 1.0, places, 0, topology).unwrap();
+            let topology = manifold.topology().clone();
+            let places = topology.vertices().map(|v| manifold.place_of(v).unwrap()).collect();
+            let mut dual = SurfaceDual::new(&manifold, &metric, 1.0, places, 0, topology).unwrap();
             dual.flip_all();
             dual
         };

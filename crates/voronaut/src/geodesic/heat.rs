@@ -212,15 +212,15 @@ mod tests {
 
     #[test]
     fn sources_are_equally_strong_whatever_area_their_vertices_have() {
-        let (input, metric) = (Manifold::shape("sphere:1", Some(0.2)).unwrap(), Constant(Tensor3::IDENTITY));
+        let (manifold, metric) = (Manifold::shape("sphere:1", Some(0.2)).unwrap(), Constant(Tensor3::IDENTITY));
         // The second one is a hundred times smaller than others: around it there are three more.
         let poles = [(0.0, 1.0), (0.0, -1.0), (2e-3, -1.0), (-1e-3, -1.0), (-2e-3, -1.0)];
         let place = |(i, (x, z)): (usize, (f64, f64))| {
             let y = if i == 3 { 2e-3 } else { 0.0 };
-            input.closest(Point3::new(x, y, z)).unwrap()
+            manifold.closest(Point3::new(x, y, z)).unwrap()
         };
         let places: Vec<_> = poles.into_iter().enumerate().map(place).collect();
-        let (canvas, at) = Canvas::on_surface(Kind::Intrinsic, &input, &metric, 6000, &places).unwrap();
+        let (canvas, at) = Canvas::on_surface(Kind::Intrinsic, &manifold, &metric, 6000, &places).unwrap();
         let mut sources = Sources::new(canvas.vertex_count());
         sources.add(at[0], 0.0, 0);
         sources.add(at[1], 0.0, 1);

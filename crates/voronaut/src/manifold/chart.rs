@@ -13,7 +13,7 @@ use crate::triangulation::FaceId;
 /// It is good as far as the surface does not turn away: where its normal has a lesser cosine with the chart's than [`STEEPEST`], it
 /// counts as so steep, so that the field is a metric everywhere (at the tip of a spike, in a fold).
 pub(crate) struct Chart<'a> {
-    input: &'a Manifold,
+    manifold: &'a Manifold,
     metric: &'a dyn SurfaceMetric,
     at: Place,
     plane: TangentPlane,
@@ -29,13 +29,18 @@ pub(crate) const STEEPEST: f64 = 0.2;
 
 impl<'a> Chart<'a> {
     /// The chart at a place, along a unit vector.
-    pub(crate) fn new(input: &'a Manifold, metric: &'a dyn SurfaceMetric, at: Place, normal: Vector3) -> Self {
-        Self::in_plane(input, metric, at, TangentPlane::new(normal))
+    pub(crate) fn new(manifold: &'a Manifold, metric: &'a dyn SurfaceMetric, at: Place, normal: Vector3) -> Self {
+        Self::in_plane(manifold, metric, at, TangentPlane::new(normal))
     }
 
     /// The chart at a place in the coordinates of a plane.
-    pub(crate) fn in_plane(input: &'a Manifold, metric: &'a dyn SurfaceMetric, at: Place, plane: TangentPlane) -> Self {
-        Self { input, metric, at, plane }
+    pub(crate) fn in_plane(
+        manifold: &'a Manifold,
+        metric: &'a dyn SurfaceMetric,
+        at: Place,
+        plane: TangentPlane,
+    ) -> Self {
+        Self { manifold, metric, at, plane }
     }
 
     /// The unit vector that it looks along.
@@ -57,11 +62,11 @@ impl<'a> Chart<'a> {
     fn place_near(&self, u: Point, face: FaceId) -> Option<Place> {
         let wanted = u - Point::default();
         let above = |from: Vector| self.at.position + self.plane.lift(from);
-        let straight = self.input.lift_along(&Place { face, ..self.at }, above(wanted), self.plane.normal, STEEPEST);
+        let straight = self.manifold.lift_along(&Place { face, ..self.at }, above(wanted), self.plane.normal, STEEPEST);
         if straight.is_some() {
             return straight;
         }
-        let closest = |from: Vector| self.input.lift(&self.at, above(from));
+        let closest = |from: Vector| self.manifold.lift(&self.at, above(from));
         let (mut from, mut place) = (wanted, closest(wanted)?);
         for _ in 0..STEPS {
             let off = wanted - self.plane.flatten(place.position - self.at.position);

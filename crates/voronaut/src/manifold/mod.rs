@@ -4,6 +4,7 @@
 //! |---|---|
 //! | here | a [`Manifold`]: triangles, the curves on them that are kept, and a rule by which points come onto it: what all work on surfaces goes by |
 //! | `place` | a point of it, and where that is |
+//! | `riemannian` | a metric on what a mesh lives on |
 //! | `chart` | a part of it seen as a part of the plane; the way over a chord |
 //! | [`domain`] | planar domains, and their own triangulation, which is their one chart |
 //! | [`surface`] | surfaces of triangles and of equations, their features, and metrics on them |
@@ -11,10 +12,12 @@
 mod chart;
 pub mod domain;
 mod place;
+mod riemannian;
 pub mod surface;
 
 pub(crate) use chart::Chart;
 pub use place::Place;
+pub use riemannian::Riemannian;
 
 use crate::error::{Error, Result};
 use crate::geometry::{Aabb3, Point3, Vector3};

@@ -29,7 +29,7 @@ impl<'a> SeedsOnSurface<'a> {
     pub(crate) fn of(diagram: &SurfaceDiagram<'a>) -> Self {
         let draped = diagram.canvas().draped();
         let places = (0..diagram.colours() as u32).filter_map(|i| Some(*draped.place(diagram.seed(i)?))).collect();
-        Self::new(draped.input(), draped.metric(), places)
+        Self::new(draped.manifold(), draped.metric(), places)
     }
 }
 

@@ -120,16 +120,16 @@ impl View for Flat<'_> {
 
 /// Seeds at places of a surface.
 pub(crate) struct SeedsOnSurface<'a> {
-    input: &'a Manifold,
+    manifold: &'a Manifold,
     metric: &'a dyn SurfaceMetric,
     places: Vec<Place>,
     normals: Vec<Vector3>,
 }
 
 impl<'a> SeedsOnSurface<'a> {
-    pub(crate) fn new(input: &'a Manifold, metric: &'a dyn SurfaceMetric, places: Vec<Place>) -> Self {
-        let normals = places.iter().map(|place| input.normal(place)).collect();
-        Self { input, metric, places, normals }
+    pub(crate) fn new(manifold: &'a Manifold, metric: &'a dyn SurfaceMetric, places: Vec<Place>) -> Self {
+        let normals = places.iter().map(|place| manifold.normal(place)).collect();
+        Self { manifold, metric, places, normals }
     }
 
     /// The chart in the middle of some seeds, if all are seen in it.
@@ -137,10 +137,10 @@ impl<'a> SeedsOnSurface<'a> {
         let (first, share) = (self.places[*seeds.first()? as usize], 1.0 / seeds.len() as f64);
         let offset = |i: u32| self.places[i as usize].position - first.position;
         let middle = seeds.iter().fold(Vector3::default(), |sum, &i| sum + offset(i) * share);
-        let place = self.input.lift(&first, first.position + middle)?;
-        let normal = self.input.normal(&place);
+        let place = self.manifold.lift(&first, first.position + middle)?;
+        let normal = self.manifold.normal(&place);
         let is_seen = |&i: &u32| self.normals[i as usize].dot(normal) >= SEEN;
-        seeds.iter().all(is_seen).then(|| Chart::new(self.input, self.metric, place, normal))
+        seeds.iter().all(is_seen).then(|| Chart::new(self.manifold, self.metric, place, normal))
     }
 
     /// The chart that looks along the normal of the straight triangle between three seeds, if it looks at the upper side there.
@@ -148,8 +148,8 @@ impl<'a> SeedsOnSurface<'a> {
         let [a, b, c] = seeds.map(|i| self.position(i));
         let normal = (b - a).cross(c - a).unit()?;
         let upright: f64 = seeds.iter().map(|&i| self.normals[i as usize].dot(normal)).sum();
-        let place = self.input.closest_facing(a + ((b - a) + (c - a)) * (1.0 / 3.0), normal)?;
-        (upright > 0.0).then(|| Chart::new(self.input, self.metric, place, normal))
+        let place = self.manifold.closest_facing(a + ((b - a) + (c - a)) * (1.0 / 3.0), normal)?;
+        (upright > 0.0).then(|| Chart::new(self.manifold, self.metric, place, normal))
     }
 
     /// What is seen in that chart.
@@ -169,7 +169,7 @@ impl<'a> SeedsOnSurface<'a> {
     /// Puts a seed elsewhere.
     pub(crate) fn put(&mut self, seed: u32, place: Place) {
         self.places[seed as usize] = place;
-        self.normals[seed as usize] = self.input.normal(&place);
+        self.normals[seed as usize] = self.manifold.normal(&place);
     }
 }
 
@@ -211,7 +211,7 @@ impl Terrain for InChart<'_> {
     }
 
     fn is_inside(&self, _seed: u32, p: Point) -> bool {
-        self.chart.place(p).is_some_and(|place| !self.seeds.input.is_at_border(&place, AT_BORDER))
+        self.chart.place(p).is_some_and(|place| !self.seeds.manifold.is_at_border(&place, AT_BORDER))
     }
 
     fn is_whole(&self) -> bool {
@@ -232,6 +232,6 @@ impl View for InChart<'_> {
     }
 
     fn is_smooth(&self) -> bool {
-        self.seeds.input.equation().is_some() || self.patch.is_some()
+        self.seeds.manifold.equation().is_some() || self.patch.is_some()
     }
 }

@@ -160,9 +160,9 @@ mod tests {
     #[test]
     fn cells_on_a_sphere_are_those_of_tangent_planes() {
         let metric = |p: Point3| Tensor3::from_disk([4.0 + p.y, 0.0, 2.0, 0.0, 0.5 * p.x, 3.0]);
-        let input = Manifold::new(sphere(1.0, 0.25).unwrap(), None);
+        let manifold = Manifold::new(sphere(1.0, 0.25).unwrap(), None);
         let fine = Manifold::new(sphere(1.0, 0.015).unwrap(), None);
-        let surface = input.surface();
+        let surface = manifold.surface();
         let places: Vec<_> =
             surface.topology().vertices().map(|v| fine.closest(surface.position(v)).unwrap()).collect();
         let mut dual = SurfaceDual::new(&fine, &metric, 20.0, places, 0, surface.topology().clone()).unwrap();

@@ -28,7 +28,7 @@ pub(crate) fn protect_on_surface(
     progress: &dyn Progress,
 ) -> Result<Protected<Place>> {
     let metric = Scaled { field: dual.metric(), factor: dual.factor() };
-    let seeds = SeedsOnSurface::new(dual.input(), &metric, dual.places().to_vec());
+    let seeds = SeedsOnSurface::new(dual.manifold(), &metric, dual.places().to_vec());
     let mut ground = OnSurface { dual, seeds, memory: Memory::default() };
     let protected = protected(&mut ground, share, progress)?;
     let net = Net::on_surface(&ground.seeds, &ground.dual.triangles(), &mut ground.memory);
@@ -38,7 +38,7 @@ pub(crate) fn protect_on_surface(
 /// The net of a dual's seeds, from its triangles.
 pub(crate) fn measured_on_surface(dual: &SurfaceDual) -> Net<Place> {
     let metric = Scaled { field: dual.metric(), factor: dual.factor() };
-    let seeds = SeedsOnSurface::new(dual.input(), &metric, dual.places().to_vec());
+    let seeds = SeedsOnSurface::new(dual.manifold(), &metric, dual.places().to_vec());
     Net::on_surface(&seeds, &dual.triangles(), &mut Memory::default())
 }
 

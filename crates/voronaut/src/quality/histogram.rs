@@ -58,15 +58,8 @@ const LENGTHS: (f64, f64) = (0.05, 2.0);
 /// Width of the bins of angles, and where the last begins, in degrees.
 const ANGLES: (f64, f64) = (3.0, 177.0);
 
-/// Measures the edges and angles of a planar mesh in a metric, in parallel; the same bits for any number of threads.
-///
-/// Geodesics are found from the metric alone (`Paths::logarithm`, from the chord on),
-/// some 500 evaluations of the field for each edge, or a few thousand where it has kinks. They know no domain but on its border: the edges of one triangle
-/// that [`Mesh::edges`] has. A mesh without triangles has empty histograms.
-///
-/// # Errors
-/// As for [`metric_quality`](super::metric_quality()), but for meshes without triangles.
-pub fn histograms(mesh: &Mesh, metric: &dyn MetricField) -> Result<Histograms> {
+/// Of a planar mesh.
+pub(super) fn in_plane(mesh: &Mesh, metric: &dyn MetricField) -> Result<Histograms> {
     demand_planar(mesh)?;
     let edges = Edges::of(&mesh.triangles);
     let edge = |side: &EdgeSide, inside: Option<f64>| {
@@ -81,15 +74,10 @@ pub fn histograms(mesh: &Mesh, metric: &dyn MetricField) -> Result<Histograms> {
     Ok(of(&measured, &Both { straight, geodesic: curved }))
 }
 
-/// The same of the mesh of a surface, whose straight edges and triangles are measured as by [`surface_quality`](super::surface_quality()):
-/// geodesics are those of the chart at the middle of an edge, between the places of the surface that its ends are closest to, and angles
-/// those in the tangent plane at a vertex.
-///
-/// # Errors
-/// As of [`surface_quality`](super::surface_quality()), but for meshes without triangles.
-pub fn histograms_on(mesh: &Mesh, input: &Manifold, metric: &dyn SurfaceMetric) -> Result<Histograms> {
+/// Of the mesh of a surface.
+pub(super) fn on_surface(mesh: &Mesh, manifold: &Manifold, metric: &dyn SurfaceMetric) -> Result<Histograms> {
     demand_vertices(mesh)?;
-    let field = Field::new(input, metric);
+    let field = Field::new(manifold, metric);
     let edges = Edges::of(&mesh.triangles);
     let measured = measure(mesh, &edges, |side, inside| field.geodesic(mesh, side, inside))?;
     let flattened = field.flattened(mesh)?;
@@ -190,6 +178,7 @@ fn unsigned(angle: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::histograms;
     use super::super::test_meshes::{grid, lattice, mesh};
     use super::*;
     use crate::manifold::surface::metric::Constant;
@@ -268,8 +257,8 @@ mod tests {
             mesh.triangles.iter().map(|&[a, b, c]| corner([a, b, c]) + corner([b, c, a]) + corner([c, a, b])).sum();
         let mean = angles / (3 * mesh.triangles.len()) as f64;
         assert!(mean > 60.5, "{mean}");
-        for (input, tolerance) in [(&exact, 1e-6), (&Manifold::new(exact.surface().clone(), None), 1e-3)] {
-            let found = histograms_on(&mesh, input, &field).unwrap();
+        for (manifold, tolerance) in [(&exact, 1e-6), (&Manifold::new(exact.surface().clone(), None), 1e-3)] {
+            let found = histograms(&mesh, (manifold, &field)).unwrap();
             assert!(
                 (found.edge_length.mean.geodesic / length - 1.0).abs() < tolerance,
                 "{:?} {length}",
@@ -295,8 +284,8 @@ mod tests {
         let field = |p: crate::geometry::Point3| {
             crate::geometry::TangentPlane { u, v, normal: u.cross(v) }.extend(bent(p.x / 0.6), 9.0)
         };
-        let input = Manifold::of(&tilted).unwrap();
-        let found = histograms_on(&tilted, &input, &field).unwrap();
+        let manifold = Manifold::of(&tilted).unwrap();
+        let found = histograms(&tilted, (&manifold, &field)).unwrap();
         assert!(truth.geodesics_on_border > 0);
         assert_eq!((found.geodesics_on_border, found.geodesics_not_found), (truth.geodesics_on_border, 0));
         for (found, truth) in [

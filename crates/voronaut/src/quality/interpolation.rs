@@ -75,14 +75,14 @@ pub fn interpolation_error(mesh: &Mesh, function: &dyn ScalarField, norm: Norm) 
 /// As of [`interpolation_error`].
 pub fn interpolation_error_on(
     mesh: &Mesh,
-    input: &Manifold,
+    manifold: &Manifold,
     function: &Expression,
     norm: Norm,
 ) -> Result<InterpolationError> {
     let value = |p: Point3| function.at(p.x, p.y, p.z);
-    let beside = |triangle: [Point3; 3]| input.closest(Point3::weighted(triangle, [1.0 / 3.0; 3])).ok();
+    let beside = |triangle: [Point3; 3]| manifold.closest(Point3::weighted(triangle, [1.0 / 3.0; 3])).ok();
     let lifted = |near: &Option<manifold::Place>, p: Point3| {
-        let place = near.as_ref().and_then(|near| input.lift(near, p));
+        let place = near.as_ref().and_then(|near| manifold.lift(near, p));
         value(place.map_or(p, |place| place.position))
     };
     error_of(mesh, &value, beside, lifted, norm)

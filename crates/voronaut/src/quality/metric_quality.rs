@@ -84,12 +84,8 @@ pub struct Spot {
     pub at: Position,
 }
 
-/// Measures a planar mesh in a metric, in parallel; the same bits for any number of threads.
-///
-/// # Errors
-/// [`Error::Mesh`] where the mesh has no triangles or names vertices that do not exist, [`Error::Unsupported`] where it
-/// is not planar, [`Error::Metric`] where the tensor at a vertex or at a Gauss point is not positive definite.
-pub fn metric_quality(mesh: &Mesh, metric: &dyn MetricField) -> Result<MetricQuality> {
+/// Of a planar mesh.
+pub(super) fn in_plane(mesh: &Mesh, metric: &dyn MetricField) -> Result<MetricQuality> {
     demand_planar(mesh)?;
     if mesh.curved.is_some() {
         mesh.check_numbers()?;
@@ -350,6 +346,7 @@ pub(super) fn fault(what: &str, place: &str) -> Error {
 #[cfg(test)]
 #[expect(clippy::float_cmp, reason = "the truths are exact")]
 mod tests {
+    use super::super::metric_quality;
     use super::super::test_meshes::{grid, lattice, mesh};
     use super::*;
     use crate::geometry::Vector;
@@ -388,7 +385,7 @@ mod tests {
 
     #[test]
     fn equilateral_lattice_is_perfect() {
-        let found = metric_quality(&lattice(8), &|_| Tensor::IDENTITY).unwrap();
+        let found = metric_quality(&lattice(8), &|_: Point| Tensor::IDENTITY).unwrap();
         let lengths = found.metric_edge_length;
         assert_eq!(lengths.unit_fraction, 1.0);
         for figure in [lengths.min, lengths.mean, lengths.max, found.quality.min, found.quality.mean] {
@@ -398,12 +395,12 @@ mod tests {
         close(found.angle.mean_min, 60.0);
         assert!(lengths.std < 1e-12);
         close(found.interior_edge_length.unwrap().mean, 1.0);
-        assert_eq!(metric_quality(&lattice(1), &|_| Tensor::IDENTITY).unwrap().interior_edge_length, None);
+        assert_eq!(metric_quality(&lattice(1), &|_: Point| Tensor::IDENTITY).unwrap().interior_edge_length, None);
     }
 
     #[test]
     fn two_right_triangles() {
-        let found = metric_quality(&grid(1, 1), &|_| Tensor::IDENTITY).unwrap();
+        let found = metric_quality(&grid(1, 1), &|_: Point| Tensor::IDENTITY).unwrap();
         close(found.metric_edge_length.mean, (4.0 + SQRT_2) / 5.0);
         close(found.quality.min, 3.0_f64.sqrt() / 2.0);
         close(found.angle.min, 45.0);
@@ -412,10 +409,10 @@ mod tests {
 
     #[test]
     fn affine_pull_back_changes_nothing() {
-        let truth = metric_quality(&lattice(6), &|_| Tensor::IDENTITY).unwrap();
+        let truth = metric_quality(&lattice(6), &|_: Point| Tensor::IDENTITY).unwrap();
         for map in [[1e3, 0.0, 0.0, 1.0], [2.0, 30.0, -0.1, 4.0], [1e-9, 0.0, 0.0, 1e-9], [1e9, 3e8, 0.0, 2e9]] {
             let (image, m) = pull_back(&lattice(6), map);
-            assert_close(&metric_quality(&image, &|_| m).unwrap(), &truth);
+            assert_close(&metric_quality(&image, &|_: Point| m).unwrap(), &truth);
         }
     }
 
@@ -436,7 +433,7 @@ mod tests {
         let missing = mesh(&[[0.0, 0.0]], &[[0, 1, 2]]);
         assert!(matches!(metric_quality(&missing, &bad), Err(Error::Mesh { .. })));
         let nowhere = mesh(&[[0.0, 0.0], [f64::NAN, 0.0], [0.0, 1.0]], &[[0, 1, 2]]);
-        assert!(metric_quality(&nowhere, &|_| Tensor::IDENTITY).is_ok());
+        assert!(metric_quality(&nowhere, &|_: Point| Tensor::IDENTITY).is_ok());
     }
 
     #[test]

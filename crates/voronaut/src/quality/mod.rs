@@ -10,6 +10,7 @@ mod interpolation;
 mod meetings;
 mod metric_quality;
 mod fidelity;
+mod riemannian;
 mod sampled_distance;
 mod self_intersections;
 mod surface_fidelity;
@@ -22,17 +23,15 @@ mod validity;
 
 pub use faults::{Fault, Position};
 pub use fidelity::{Farthest, Fidelity, fidelity};
-pub use histogram::{Both, Histogram, Histograms, histograms, histograms_on};
+pub use histogram::{Both, Histogram, Histograms};
 pub use interpolation::{Exponent, InterpolationError, interpolation_error, interpolation_error_on};
 pub use meetings::{Excused, Meetings};
-pub use metric_quality::{Angles, EdgeLengths, MetricQuality, Quality, Spot, Worst, metric_quality};
+pub use metric_quality::{Angles, EdgeLengths, MetricQuality, Quality, Spot, Worst};
+pub use riemannian::{histograms, metric_quality, unmet};
 pub(crate) use self_intersections::crossings;
 pub use self_intersections::{Crossing, crossing_edges};
 pub(crate) use surface_fidelity::distances_around;
 pub use surface_fidelity::{Deviation, NormalDeviation, SurfaceFidelity, surface_fidelity};
-pub use surface_quality::surface_quality;
-pub use unmet::{
-    Cause, CauseFigures, Needle, Needles, Unmet, UnmetEdge, UnmetFigures, WorstEdge, surface_unmet, unmet,
-};
+pub use unmet::{Cause, CauseFigures, Needle, Needles, Unmet, UnmetEdge, UnmetFigures, WorstEdge};
 pub(crate) use validity::examined_on;
 pub use validity::{Validity, check, validity, validity_on};

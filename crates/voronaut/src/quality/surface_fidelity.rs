@@ -303,16 +303,16 @@ mod tests {
 
     #[test]
     fn an_icosahedron_in_its_sphere_in_closed_form() {
-        let input = Manifold::shape("sphere:2", Some(0.25)).unwrap();
+        let manifold = Manifold::shape("sphere:2", Some(0.25)).unwrap();
         let mesh = sphere(2.0, 4.0).unwrap().to_mesh();
-        let found = surface_fidelity(&mesh, &input).unwrap();
+        let found = surface_fidelity(&mesh, &manifold).unwrap();
         // Circumradius 2, inradius of the icosahedron; the same from both sides.
         let golden = 0.5 * (1.0 + 5.0_f64.sqrt());
         let edge = 2.0 / (0.5 * (golden * 5.0_f64.sqrt()).sqrt());
         let gap = 2.0 - edge * golden * golden / (2.0 * 3.0_f64.sqrt());
         for side in [found.both, found.mesh_to_surface, found.surface_to_mesh] {
             assert!(side.hausdorff <= gap * (1.0 + 1e-12) && side.hausdorff > 0.99 * gap, "{side:?} {gap}");
-            close(side.hausdorff_share, side.hausdorff / input.bounds().diagonal(), 1e-15);
+            close(side.hausdorff_share, side.hausdorff / manifold.bounds().diagonal(), 1e-15);
             let Position::Space(at) = side.at else { panic!("three coordinates") };
             let from_centre = (Point3::from(at) - Point3::default()).norm();
             assert!(from_centre > 2.0 - gap - 1e-9 && from_centre < 2.0 + 1e-12);
@@ -355,17 +355,17 @@ mod tests {
     #[test]
     fn distances_are_to_the_equation_not_to_its_mesh() {
         // A fine mesh of the true torus, held against a coarse first mesh with the equation.
-        let input = Manifold::shape("torus:2,0.7", Some(0.4)).unwrap();
+        let manifold = Manifold::shape("torus:2,0.7", Some(0.4)).unwrap();
         let mesh = torus(2.0, 0.7, 0.15).unwrap().to_mesh();
-        let exact = surface_fidelity(&mesh, &input).unwrap();
-        let by_mesh = surface_fidelity(&mesh, &Manifold::new(input.surface().clone(), None)).unwrap();
+        let exact = surface_fidelity(&mesh, &manifold).unwrap();
+        let by_mesh = surface_fidelity(&mesh, &Manifold::new(manifold.surface().clone(), None)).unwrap();
         // Sagittas of edges of 0.15 and 0.4 on radius 0.7.
         assert!(exact.both.hausdorff < 8e-3 && by_mesh.both.hausdorff > 0.02, "{exact:?} {by_mesh:?}");
         assert!(exact.vertex_to_surface.value < 1e-14 && by_mesh.vertex_to_surface.value > 0.02);
         assert!(exact.normal_deviation.mean < by_mesh.normal_deviation.mean);
         // Pushed out by 0.1 along its normals it is that far away everywhere, by |f| / |grad f| to first order.
         let out = torus(2.0, 0.8, 0.1).unwrap().to_mesh();
-        let found = surface_fidelity(&out, &input).unwrap();
+        let found = surface_fidelity(&out, &manifold).unwrap();
         close(found.both.hausdorff, 0.1, 0.01);
         close(found.both.rms, 0.1, 0.02);
         close(found.vertex_to_surface.value, (0.8 * 0.8 - 0.7 * 0.7) / 1.6, 1e-9);
@@ -389,15 +389,15 @@ mod tests {
 
     #[test]
     fn faults_are_errors_and_threads_do_not_matter() {
-        let input = Manifold::shape("torus:2,0.7", Some(0.4)).unwrap();
-        assert!(surface_fidelity(&Mesh::default(), &input).is_err());
+        let manifold = Manifold::shape("torus:2,0.7", Some(0.4)).unwrap();
+        assert!(surface_fidelity(&Mesh::default(), &manifold).is_err());
         let mesh = torus(2.0, 0.7, 0.5).unwrap().to_mesh();
         let mut broken = mesh.clone();
         broken.points[3][0] = f64::INFINITY;
-        assert!(surface_fidelity(&broken, &input).is_err());
+        assert!(surface_fidelity(&broken, &manifold).is_err());
         broken.triangles[0][0] = u32::MAX;
-        assert!(surface_fidelity(&broken, &input).is_err());
-        let with = |threads| crate::test_cases::on_threads(threads, || surface_fidelity(&mesh, &input).unwrap());
+        assert!(surface_fidelity(&broken, &manifold).is_err());
+        let with = |threads| crate::test_cases::on_threads(threads, || surface_fidelity(&mesh, &manifold).unwrap());
         assert_eq!(with(1), with(3));
     }
 }

@@ -11,18 +11,8 @@ use crate::manifold::{Chart, Manifold};
 use crate::mesh::{EdgeSide, Mesh};
 use crate::metric::MetricField;
 
-/// Measures the mesh of a surface in a metric on it, in parallel; the same bits for any number of threads. `surface` is what
-/// the metric is a field on; the mesh may stray from it.
-///
-/// The metric along a straight edge is that of the closest places of the surface, seen by the edge's direction in their
-/// tangent planes: an edge keeps its Euclidean length, and never sees the eigenvalue of the normal. The metric of a triangle is
-/// the log-Euclidean mean of those at its corners, each restricted to its tangent plane and turned into the triangle's plane by
-/// the smallest rotation. Triangles have no side: their quality is never negative.
-///
-/// # Errors
-/// [`Error::Mesh`](crate::Error::Mesh) where the mesh has no triangles, names vertices that do not exist, or has positions that
-/// are not finite; [`Error::Metric`](crate::Error::Metric) where a tensor is not positive definite.
-pub fn surface_quality(mesh: &Mesh, surface: &Manifold, metric: &dyn SurfaceMetric) -> Result<MetricQuality> {
+/// Of the mesh of a surface.
+pub(super) fn on_surface(mesh: &Mesh, surface: &Manifold, metric: &dyn SurfaceMetric) -> Result<MetricQuality> {
     demand_vertices(mesh)?;
     let field = Field::new(surface, metric);
     let shape = field.shapes(mesh)?;
@@ -145,7 +135,7 @@ fn length(Seen { tensor, normal }: Seen, edge: Vector3) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::metric_quality::metric_quality;
+    use super::super::metric_quality;
     use super::super::test_meshes::grid;
     use super::*;
     use crate::geometry::{Tensor, Tensor3};
@@ -211,7 +201,7 @@ mod tests {
             TangentPlane { u: columns[0], v: columns[1], normal: columns[2] }.extend(m, 1e5)
         };
         let surface = Manifold::of(&turned).unwrap();
-        let found = surface_quality(&turned, &surface, &field).unwrap();
+        let found = metric_quality(&turned, (&surface, &field)).unwrap();
         assert_close(&found, &truth, 1e-9);
         assert_eq!(found.interior_edge_length.is_some(), truth.interior_edge_length.is_some());
         let [p, q] = [found, truth].map(|found| found.worst.triangle.at);
@@ -233,8 +223,8 @@ mod tests {
     fn the_normal_is_not_seen() {
         let surface = Manifold::new(sphere(2.0, 0.4).unwrap(), None);
         let mesh = torus(1.5, 0.4, 0.2).unwrap().to_mesh();
-        let truth = surface_quality(&mesh, &surface, &Constant(Tensor3::IDENTITY)).unwrap();
-        assert_close(&surface_quality(&mesh, &surface, &Thick).unwrap(), &truth, 1e-9);
+        let truth = metric_quality(&mesh, (&surface, &Constant(Tensor3::IDENTITY))).unwrap();
+        assert_close(&metric_quality(&mesh, (&surface, &Thick)).unwrap(), &truth, 1e-9);
         let longest = truth.metric_edge_length.max;
         let edges = mesh.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
         let lengths = edges.map(|[a, b]| mesh.position(a).distance(mesh.position(b)));
@@ -245,7 +235,7 @@ mod tests {
     fn a_rolled_sheet_is_the_sheet() {
         let sheet = bent();
         let m = Tensor::new(9.0, 2.0, 1.0);
-        let truth = metric_quality(&sheet, &|_| m).unwrap();
+        let truth = metric_quality(&sheet, &|_: Point| m).unwrap();
         // Unit steps around a cylinder: what chords and tangents see differs by the square of 1 / radius.
         for radius in [20.0, 80.0] {
             let mut rolled = sheet.clone();
@@ -259,7 +249,7 @@ mod tests {
                 let along = Vector3::new(0.0, 1.0, 0.0);
                 TangentPlane { u: around, v: along, normal: around.cross(along) }.extend(m, 77.0)
             };
-            let found = surface_quality(&rolled, &Manifold::of(&rolled).unwrap(), &field).unwrap();
+            let found = metric_quality(&rolled, (&Manifold::of(&rolled).unwrap(), &field)).unwrap();
             assert_close(&found, &truth, 5.0 / (radius * radius));
         }
     }
@@ -268,17 +258,17 @@ mod tests {
     fn faults_are_errors_and_threads_do_not_matter() {
         let surface = Manifold::new(sphere(2.0, 0.4).unwrap(), None);
         let mesh = surface.whole_mesh();
-        let nan = surface_quality(&mesh, &surface, &|_: Point3| Tensor3::IDENTITY * f64::NAN);
+        let nan = metric_quality(&mesh, (&surface, &|_: Point3| Tensor3::IDENTITY * f64::NAN));
         assert!(matches!(nan, Err(crate::Error::Metric { .. })));
-        let empty = surface_quality(&Mesh::default(), &surface, &Constant(Tensor3::IDENTITY));
+        let empty = metric_quality(&Mesh::default(), (&surface, &Constant(Tensor3::IDENTITY)));
         assert!(matches!(empty, Err(crate::Error::Mesh { .. })));
         let mut broken = mesh.clone();
         broken.points[0][1] = f64::NAN;
-        let broken = surface_quality(&broken, &surface, &Constant(Tensor3::IDENTITY));
+        let broken = metric_quality(&broken, (&surface, &Constant(Tensor3::IDENTITY)));
         assert!(matches!(broken, Err(crate::Error::Mesh { .. })));
         let field = |p: Point3| Tensor3::from_disk([2.0 + p.x.sin(), 0.1, 2.0, 0.1, 0.1, 1.0 + p.y * p.y]);
         let with =
-            |threads| crate::test_cases::on_threads(threads, || surface_quality(&mesh, &surface, &field).unwrap());
+            |threads| crate::test_cases::on_threads(threads, || metric_quality(&mesh, (&surface, &field)).unwrap());
         assert_eq!(with(1), with(3));
     }
 }

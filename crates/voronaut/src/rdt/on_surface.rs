@@ -86,7 +86,7 @@ impl InCircle for OnSurface<'_> {
     fn solve(&self, i: u32, j: u32, level: usize) -> Option<Known> {
         let [from, to] = [i, j].map(|k| self.seeds[k as usize]);
         let value = self.canvas.draped().geodesic(from, to)?.length;
-        let error = if self.canvas.draped().input().equation().is_some() { OF_EQUATION } else { ROUNDING };
+        let error = if self.canvas.draped().manifold().equation().is_some() { OF_EQUATION } else { ROUNDING };
         Some(Known { length: PathLength { value, error, curvature: [0.0; 2] }, level, is_vetoed: false })
     }
 

@@ -110,7 +110,8 @@ impl<P: Copy> GeodesicEdge<P> {
 
 impl Realisation {
     /// Of triangles of a diagram's seeds, such as its nerve or a dual.
-    pub fn new(diagram: &Diagram, field: &dyn MetricField, triangles: &[[u32; 3]]) -> Self {
+    pub fn new(diagram: &Diagram, triangles: &[[u32; 3]]) -> Self {
+        let field = diagram.ground().field;
         let pairs: Vec<[u32; 2]> = Edges::of(triangles).ends().collect();
         let edges = edges::of(diagram, field, &pairs);
         let mut crossing: Vec<[u32; 2]> = crossings(&edges).iter().map(|c| c.paths).collect();

@@ -33,7 +33,7 @@ fn apart(mut points: Vec<Point3>) -> Vec<Point3> {
 
 impl Realisation<Point3> {
     /// Of triangles of the seeds of a surface's diagram. An edge for which there is no way is straight, with an infinite error.
-    pub fn on_surface(diagram: &SurfaceDiagram, triangles: &[[u32; 3]]) -> Self {
+    pub(crate) fn on_surface(diagram: &SurfaceDiagram, triangles: &[[u32; 3]]) -> Self {
         let draped = diagram.canvas().draped();
         let vertex = |i: u32| diagram.seed(i).unwrap_or(VertexId(0));
         let pairs: Vec<[u32; 2]> = Edges::of(triangles).ends().collect();

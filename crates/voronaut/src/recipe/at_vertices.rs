@@ -24,25 +24,25 @@ pub fn metric_at_vertices(
     surface: Manifold,
     sources: Vec<SurfaceSource>,
 ) -> Result<(Outcome, Solution)> {
-    let input = surface.cut(&FeatureOptions::default())?;
-    let vertices = TangentPlanes::to_join(&input);
-    let pipeline = Pipeline { limits: spread(&pipeline.limits, &input)?, ..pipeline.clone() };
-    let sources = sources.into_iter().map(|source| at(source, &input, &vertices)).collect::<Result<Vec<_>>>()?;
+    let manifold = surface.cut(&FeatureOptions::default())?;
+    let vertices = TangentPlanes::to_join(&manifold);
+    let pipeline = Pipeline { limits: spread(&pipeline.limits, &manifold)?, ..pipeline.clone() };
+    let sources = sources.into_iter().map(|source| at(source, &manifold, &vertices)).collect::<Result<Vec<_>>>()?;
     let made = pipeline.run_on(&vertices, &sources)?;
     let joined = vertices.joined(&made.tensors);
     let tensors = vertices.seen(&joined);
-    let entries = joined[..input.seams().vertices_before()].iter().map(|m| m.to_disk()).collect();
+    let entries = joined[..manifold.seams().vertices_before()].iter().map(|m| m.to_disk()).collect();
     let outcome = Outcome { complexity: complexity(&vertices, &tensors), tensors, ..made };
     Ok((outcome, Solution { dimension: 3, values: SolutionValues::Tensor3(entries) }))
 }
 
 /// What a source says at the vertices.
-fn at(source: SurfaceSource, input: &Manifold, vertices: &TangentPlanes) -> Result<Source> {
-    let surface = input.surface();
+fn at(source: SurfaceSource, manifold: &Manifold, vertices: &TangentPlanes) -> Result<Source> {
+    let surface = manifold.surface();
     match source {
         SurfaceSource::Implied => Ok(Source::Metric(vertices.implied()?)),
         SurfaceSource::Function(values) => {
-            let recovered = hessians_on(surface, &spread_values(values, input)?)?;
+            let recovered = hessians_on(surface, &spread_values(values, manifold)?)?;
             let known: Vec<Tensor> = recovered.iter().flatten().map(|found| found.1).collect();
             let mut absolute = weighted(&known, Norm::GREATEST)?.into_iter();
             let mut in_space =
@@ -59,17 +59,17 @@ fn at(source: SurfaceSource, input: &Manifold, vertices: &TangentPlanes) -> Resu
             Ok(Source::Hessian(vertices.seen(&hessians)))
         }
         SurfaceSource::Named(Spec::Hessian(function)) => {
-            let field = CovariantHessian::new(function, input, Norm::default())?;
+            let field = CovariantHessian::new(function, manifold, Norm::default())?;
             let hessian = |v: u32| {
-                let second = vertices.place(input, v).map(|place| field.second_derivatives(&place));
+                let second = vertices.place(manifold, v).map(|place| field.second_derivatives(&place));
                 second.map_or(Tensor3::default(), |(plane, hessian)| plane.extend(hessian, 0.0))
             };
             let hessians: Vec<Tensor3> = (0..vertices.count() as u32).map(hessian).collect();
             Ok(Source::Hessian(vertices.seen(&hessians)))
         }
         _ => {
-            let (field, _) = named(source, input, &MetricOptions::default(), GradedAt::Scale(1.0))?;
-            let tensor = |v: u32| vertices.place(input, v).map_or(Tensor3::IDENTITY, |place| field.at(&place));
+            let (field, _) = named(source, manifold, &MetricOptions::default(), GradedAt::Scale(1.0))?;
+            let tensor = |v: u32| vertices.place(manifold, v).map_or(Tensor3::IDENTITY, |place| field.at(&place));
             let tensors: Vec<Tensor3> = (0..vertices.count() as u32).map(tensor).collect();
             Ok(Source::Metric(vertices.seen(&tensors)))
         }
@@ -77,9 +77,9 @@ fn at(source: SurfaceSource, input: &Manifold, vertices: &TangentPlanes) -> Resu
 }
 
 /// Limits at the vertices of the surface, as limits at those that it has since it was cut.
-fn spread(limits: &Limits, input: &Manifold) -> Result<Limits> {
-    limits.check(input.seams().vertices_before())?;
-    let originals = input.seams().originals();
+fn spread(limits: &Limits, manifold: &Manifold) -> Result<Limits> {
+    limits.check(manifold.seams().vertices_before())?;
+    let originals = manifold.seams().originals();
     let spread = |limit: &Option<Limit>| match limit {
         Some(Limit::Field(values)) => Some(Limit::Field(originals.iter().map(|&v| values[v as usize]).collect())),
         other => other.clone(),

@@ -1,6 +1,6 @@
 //! The certificate of a diagram's seeds, and the canvas that it takes.
 
-use super::{SeedDual, dual, net, surface_dual, surface_net};
+use super::{Measured, SeedDual, dual, net};
 use crate::canvas::{BYTES_PER_VERTEX, Canvas, Draped, Kind, VERTICES_PER_SEED, size_for};
 use crate::certificate::{Area, Certificate, Constants, longest_edge, sized_canvas};
 use crate::diagram::{Diagram, SurfaceDiagram};
@@ -48,9 +48,7 @@ pub fn certified_canvas(
     };
     let examine = |canvas: &Canvas| {
         let diagram = Diagram::new(canvas, field, seeds)?;
-        let SeedDual { exact, .. } = dual(&diagram, field, Road::Both, &Silent);
-        let certificate = Certificate::new(&diagram, &exact, &net(&diagram, field, &exact), constants);
-        Ok((certificate, Area::of(diagram.ground())))
+        Ok(examined(&diagram, constants))
     };
     Request { kind, seeds: seeds.len(), memory_limit }.met(make, sized, examine)
 }
@@ -61,23 +59,27 @@ pub fn certified_canvas(
 /// As for [`certified_canvas`] and [`Canvas::on_surface`].
 pub fn certified_canvas_on<'s>(
     kind: Kind,
-    input: &'s Manifold,
+    manifold: &'s Manifold,
     metric: &'s dyn SurfaceMetric,
     seeds: &[Place],
     constants: Constants,
     memory_limit: u64,
 ) -> Result<(Canvas<Draped<'s>>, Vec<VertexId>)> {
-    let make = |vertices: usize| Canvas::on_surface(kind, input, metric, vertices, seeds);
+    let make = |vertices: usize| Canvas::on_surface(kind, manifold, metric, vertices, seeds);
     let sized = |size: f64, bounds: [f64; 2]| {
         sized_canvas(size, bounds, make, |(canvas, _)| (longest_edge(canvas.topology()), canvas.vertex_count()))
     };
     let examine = |(canvas, at): &(Canvas<Draped<'s>>, Vec<VertexId>)| {
         let diagram = SurfaceDiagram::on_surface(canvas, at, Method::March)?;
-        let SeedDual { exact, .. } = surface_dual(&diagram, Road::Both, &Silent);
-        let certificate = Certificate::on_surface(&diagram, &exact, &surface_net(&diagram, &exact), constants);
-        Ok((certificate, Area::of(diagram.ground())))
+        Ok(examined(&diagram, constants))
     };
     Request { kind, seeds: seeds.len(), memory_limit }.met(make, sized, examine)
+}
+
+/// What a diagram is certified for, and what canvases there take.
+fn examined<'a, G: Measured<'a>>(diagram: &Diagram<'a, G>, constants: Constants) -> (Certificate, Area) {
+    let SeedDual { exact, .. } = dual(diagram, Road::Both, &Silent);
+    (G::certificate(diagram, &exact, &net(diagram, &exact), constants), Area::of(diagram.ground()))
 }
 
 /// What canvas is asked for.

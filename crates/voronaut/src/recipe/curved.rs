@@ -111,8 +111,8 @@ fn demand_valid(mesh: &Mesh, is_bent: bool) -> Result<Validity> {
 ///
 /// # Errors
 /// [`Error::Unsupported`].
-pub(super) fn demand_possible_on(input: &Manifold, options: &MeshOptions) -> Result<()> {
-    if options.order > 1 && input.equation().is_none() {
+pub(super) fn demand_possible_on(manifold: &Manifold, options: &MeshOptions) -> Result<()> {
+    if options.order > 1 && manifold.equation().is_none() {
         let help = "give an equation (`sphere:`, `torus:`, or f = 0), or use `order` 1";
         return Err(Error::unsupported("curved triangles on a surface of triangles", help));
     }
@@ -126,11 +126,11 @@ pub(super) fn demand_possible_on(input: &Manifold, options: &MeshOptions) -> Res
 ///
 /// # Errors
 /// The mesh would not be valid.
-pub(super) fn curve_onto(meshed: &mut Meshed, input: &Manifold, meetings: &Meetings, order: usize) -> Result<()> {
+pub(super) fn curve_onto(meshed: &mut Meshed, manifold: &Manifold, meetings: &Meetings, order: usize) -> Result<()> {
     if order == 1 {
         return Ok(());
     }
-    if let Some((count, at)) = onto_surface(&mut meshed.mesh, input, order) {
+    if let Some((count, at)) = onto_surface(&mut meshed.mesh, manifold, order) {
         meshed.notes.push(format!(
             "{count} nodes are not on the surface, for triangles would fold or it was not found: the first is near {at}"
         ));

@@ -1,17 +1,19 @@
 //! The dual of given seeds, in the plane or on a surface: none is added, none moved.
 
-use crate::diagram::{Diagram, Ground, Kind, Nerve, NerveTriangle, SurfaceDiagram};
+use crate::canvas::{Canvas, Draped};
+use crate::certificate::{Certificate, Constants};
+use crate::diagram::{Diagram, Flat, Ground, Kind, Nerve, NerveTriangle, SurfaceDiagram};
 use crate::dual::Road;
 use crate::figures;
 use crate::geometry::{Point, Point3};
 use crate::lists::in_order;
 use crate::manifold::{Manifold, Place};
 use crate::mesh::Mesh;
-use crate::metric::MetricField;
 use crate::net::{Memory, Net, SeedsOnSurface, Simplices};
 use crate::planar::Location;
 use crate::progress::Progress;
 use crate::rdt::{Edge, Judge, OnSurface, Rdt, Start, Trust};
+use crate::realisation::Realisation;
 use crate::triangulation::HalfEdge;
 use std::collections::HashSet;
 
@@ -40,27 +42,124 @@ pub struct SeedDual {
     pub seconds: Vec<(&'static str, f64)>,
 }
 
+/// A ground, of the plane or of a surface, on which geodesics tell more of seeds than a canvas does.
+pub trait Measured<'a>: Ground<'a> {
+    /// Where seeds are.
+    type Seed: Copy + PartialEq + Send + Sync;
+    /// What lines are of.
+    type Point: Copy + Into<[f64; 3]> + Send + Sync;
+
+    /// See [`dual`].
+    fn dual(diagram: &Diagram<'a, Self>, road: Road, progress: &dyn Progress) -> SeedDual;
+    /// See [`net`], whose epsilon knows canvas vertices, too.
+    fn net(diagram: &Diagram<'a, Self>, exact: &[[u32; 3]]) -> Net<Self::Seed>;
+    /// Certifies a diagram on a canvas that is a triangulation. The net is that of its seeds ([`net`]), from the triangles of their exact dual.
+    /// On a surface each seed is seen in a chart, and convex disks are known of closed ones that have an equation only: triangles have no curvature but at
+    /// their vertices.
+    fn certificate(
+        diagram: &Diagram<'a, Self>,
+        exact: &[[u32; 3]],
+        net: &Net<Self::Seed>,
+        constants: Constants,
+    ) -> Certificate;
+    /// Triangles of seeds with geodesic edges: see [`Realisation::new`].
+    fn realisation(diagram: &Diagram<'a, Self>, triangles: &[[u32; 3]]) -> Realisation<Self::Point>;
+}
+
 /// The dual by the road that is asked for: the nerve of the cells as drawn on the canvas, or what in-circle tests by
 /// lengths of geodesics make of it, or, with both, as far as these are sure and agree with distances on the canvas. Of a
 /// diagram that is not Riemannian there is one road, its nerve as canvas faces of three colours have it, nothing mended, and
 /// nothing exact to compare with.
-pub fn dual(diagram: &Diagram, field: &dyn MetricField, road: Road, progress: &dyn Progress) -> SeedDual {
-    if diagram.kind() != Kind::Riemannian {
-        return as_read(diagram, progress);
+pub fn dual<'a, G: Measured<'a>>(diagram: &Diagram<'a, G>, road: Road, progress: &dyn Progress) -> SeedDual {
+    if diagram.kind() == Kind::Riemannian { G::dual(diagram, road, progress) } else { as_read(diagram, progress) }
+}
+
+/// The net of a diagram's seeds, from the triangles of their exact dual. Its epsilon is the greatest of the circumradii and
+/// of the distances of canvas vertices; seeds need not lie on the border, so that nothing is said of protection there. On a surface circles are found in
+/// charts.
+pub fn net<'a, G: Measured<'a>>(diagram: &Diagram<'a, G>, exact: &[[u32; 3]]) -> Net<G::Seed> {
+    let mut net = G::net(diagram, exact);
+    let farthest = diagram.farthest().map_or(0.0, |(_, distance)| distance);
+    net.epsilon = if farthest.is_finite() { net.epsilon.max(farthest) } else { net.epsilon };
+    net
+}
+
+impl<'a> Measured<'a> for Flat<'a> {
+    type Seed = Point;
+    type Point = Point;
+
+    fn dual(diagram: &Diagram<'a>, road: Road, progress: &dyn Progress) -> SeedDual {
+        let start = progress.seconds();
+        let nerve = diagram.sharp_nerve();
+        let passes = diagram.passes();
+        let read = progress.seconds();
+        let reference = |i: u32, j: u32| passes.between(i, j).map(|(distance, _)| (distance, CANVAS_ERROR * distance));
+        let trust = match road {
+            Road::Geodesic => Trust::default(),
+            Road::Canvas | Road::Both => Trust { reference: Some(&reference), doubt: DOUBT },
+        };
+        let rdt = Rdt::new(diagram.ground().field, &seeds(diagram), &Start::from_nerve(&nerve), trust);
+        let seconds = vec![("nerve", read - start), ("tests", progress.seconds() - read)];
+        by_road(diagram, nerve, &rdt, road, seconds)
     }
-    let start = progress.seconds();
-    let nerve = diagram.sharp_nerve();
-    let passes = diagram.passes();
-    let read = progress.seconds();
-    let seeds: Vec<_> = (0..diagram.colours() as u32).map(|i| diagram.seed(i).unwrap_or_default()).collect();
-    let reference = |i: u32, j: u32| passes.between(i, j).map(|(distance, _)| (distance, CANVAS_ERROR * distance));
-    let trust = match road {
-        Road::Geodesic => Trust::default(),
-        Road::Canvas | Road::Both => Trust { reference: Some(&reference), doubt: DOUBT },
-    };
-    let rdt = Rdt::new(field, &seeds, &Start::from_nerve(&nerve), trust);
-    let seconds = vec![("nerve", read - start), ("tests", progress.seconds() - read)];
-    by_road(diagram, nerve, &rdt, road, seconds)
+
+    fn net(diagram: &Diagram<'a>, exact: &[[u32; 3]]) -> Net {
+        let (canvas, seeds) = (diagram.canvas(), seeds(diagram));
+        let at = canvas.locate_all(&seeds);
+        let face = |seed: u32| match at[seed as usize]? {
+            Location::Face(f) => Some(f),
+            Location::Edge(h) | Location::Behind(h) => Some(h.face()),
+            Location::Vertex(v) => canvas.embedded().topology.start(v).map(HalfEdge::face),
+        };
+        let sees = |from, p| !matches!(canvas.embedded().walk(from, p, false), Location::Behind(_));
+        let is_inside = |seed: u32, p: Point| face(seed).is_some_and(|from| sees(from, p));
+        let simplices = Simplices { seeds: &seeds, triangles: exact, border: &[], is_inside: &is_inside };
+        Net::measure(diagram.ground().field, &simplices)
+    }
+
+    fn certificate(diagram: &Diagram<'a>, exact: &[[u32; 3]], net: &Net, constants: Constants) -> Certificate {
+        Certificate::new(diagram, exact, net, constants)
+    }
+
+    fn realisation(diagram: &Diagram<'a>, triangles: &[[u32; 3]]) -> Realisation {
+        Realisation::new(diagram, triangles)
+    }
+}
+
+fn seeds(diagram: &Diagram) -> Vec<Point> {
+    (0..diagram.colours() as u32).map(|i| diagram.seed(i).unwrap_or_default()).collect()
+}
+
+impl<'a> Measured<'a> for &'a Canvas<Draped<'a>> {
+    type Seed = Place;
+    type Point = Point3;
+
+    fn dual(diagram: &SurfaceDiagram<'a>, road: Road, progress: &dyn Progress) -> SeedDual {
+        let start = progress.seconds();
+        let nerve = diagram.sharp_nerve();
+        let read = progress.seconds();
+        let (glued, copies) = diagram.glued_nerve();
+        let rdt = Rdt::from_glued(OnSurface::new(diagram), diagram.colours(), glued, &copies);
+        let seconds = vec![("nerve", read - start), ("tests", progress.seconds() - read)];
+        by_road(diagram, nerve, &rdt, road, seconds)
+    }
+
+    fn net(diagram: &SurfaceDiagram<'a>, exact: &[[u32; 3]]) -> Net<Place> {
+        Net::on_surface(&SeedsOnSurface::of(diagram), exact, &mut Memory::default())
+    }
+
+    fn certificate(
+        diagram: &SurfaceDiagram<'a>,
+        exact: &[[u32; 3]],
+        net: &Net<Place>,
+        constants: Constants,
+    ) -> Certificate {
+        Certificate::on_surface(diagram, exact, net, constants)
+    }
+
+    fn realisation(diagram: &SurfaceDiagram<'a>, triangles: &[[u32; 3]]) -> Realisation<Point3> {
+        Realisation::on_surface(diagram, triangles)
+    }
 }
 
 fn by_road<'a, G: Ground<'a>>(
@@ -103,34 +202,6 @@ pub(super) fn compared<'a, G: Ground<'a>>(diagram: &Diagram<'a, G>, exact: &[[u3
         missing: exact.difference(&raw).count(),
         extra: raw.difference(&exact).count(),
     }
-}
-
-/// The net of a diagram's seeds, from the triangles of their exact dual. Its epsilon is the greatest of the circumradii and
-/// of the distances of canvas vertices; seeds need not lie on the border, so that nothing is said of protection there.
-pub fn net(diagram: &Diagram, field: &dyn MetricField, exact: &[[u32; 3]]) -> Net {
-    let seeds: Vec<Point> = (0..diagram.colours() as u32).map(|i| diagram.seed(i).unwrap_or_default()).collect();
-    let canvas = diagram.canvas();
-    let at = canvas.locate_all(&seeds);
-    let face = |seed: u32| match at[seed as usize]? {
-        Location::Face(f) => Some(f),
-        Location::Edge(h) | Location::Behind(h) => Some(h.face()),
-        Location::Vertex(v) => canvas.embedded().topology.start(v).map(HalfEdge::face),
-    };
-    let sees = |from, p| !matches!(canvas.embedded().walk(from, p, false), Location::Behind(_));
-    let is_inside = |seed: u32, p: Point| face(seed).is_some_and(|from| sees(from, p));
-    let mut net =
-        Net::measure(field, &Simplices { seeds: &seeds, triangles: exact, border: &[], is_inside: &is_inside });
-    let farthest = diagram.farthest().map_or(0.0, |(_, distance)| distance);
-    net.epsilon = if farthest.is_finite() { net.epsilon.max(farthest) } else { net.epsilon };
-    net
-}
-
-/// The net of a surface diagram's seeds, from the triangles of their exact dual, as [`net`] has it of the plane; circles are found in charts.
-pub fn surface_net(diagram: &SurfaceDiagram, exact: &[[u32; 3]]) -> Net<Place> {
-    let mut net = Net::on_surface(&SeedsOnSurface::of(diagram), exact, &mut Memory::default());
-    let farthest = diagram.farthest().map_or(0.0, |(_, distance)| distance);
-    net.epsilon = if farthest.is_finite() { net.epsilon.max(farthest) } else { net.epsilon };
-    net
 }
 
 /// Triangles of the nerve that no triangulation could hold beside the others, and of which it is sure: cells that touch
@@ -179,27 +250,13 @@ fn disagreement(edge: &Edge, of_nerve: &HashSet<[u32; 2]>, road: Road) -> figure
     figures::Disagreement { edge: edge.ends, instead, margin, error, settled_by }
 }
 
-/// The dual of a diagram's seeds on a surface, by the road that is asked for; see [`super::dual()`].
-pub fn surface_dual(diagram: &SurfaceDiagram, road: Road, progress: &dyn Progress) -> SeedDual {
-    if diagram.kind() != Kind::Riemannian {
-        return as_read(diagram, progress);
-    }
-    let start = progress.seconds();
-    let nerve = diagram.sharp_nerve();
-    let read = progress.seconds();
-    let (glued, copies) = diagram.glued_nerve();
-    let rdt = Rdt::from_glued(OnSurface::new(diagram), diagram.colours(), glued, &copies);
-    let seconds = vec![("nerve", read - start), ("tests", progress.seconds() - read)];
-    by_road(diagram, nerve, &rdt, road, seconds)
-}
-
 /// Triangles of seeds on a surface as a mesh: vertex i is seed i, with the region labels of the surface.
-pub fn surface_mesh(input: &Manifold, places: &[Place], triangles: Vec<[u32; 3]>) -> Mesh {
-    let topology = input.topology();
+pub fn surface_mesh(manifold: &Manifold, places: &[Place], triangles: Vec<[u32; 3]>) -> Mesh {
+    let topology = manifold.topology();
     let label = |t: &[u32; 3]| {
         let corners = t.map(|v| places[v as usize].position);
         let middle = Point3::weighted(corners, [1.0 / 3.0; 3]);
-        let place = input.lift(&places[t[0] as usize], middle).unwrap_or(places[t[0] as usize]);
+        let place = manifold.lift(&places[t[0] as usize], middle).unwrap_or(places[t[0] as usize]);
         topology.region(place.face)
     };
     Mesh {

@@ -28,7 +28,7 @@ mod surface_pass;
 pub use adapt::{Adaptive, LoopOptions, Source, Step, adapt};
 pub use at_vertices::metric_at_vertices;
 pub use certified::{certified_canvas, certified_canvas_on};
-pub use dual::{SeedDual, dual, net, surface_dual, surface_mesh, surface_net};
+pub use dual::{Measured, SeedDual, dual, net, surface_mesh};
 #[cfg(test)]
 pub(crate) use field::metric_named;
 pub use field::{
@@ -87,7 +87,7 @@ pub struct Meshed {
     pub finer: Vec<f64>,
     /// The star set that became the mesh, with [`Mesher::StarSet`].
     pub star_set: Option<figures::StarSet>,
-    /// Seconds per stage, in order, by the clock of [`Progress::seconds`].
+    /// Seconds per stage, in order, by the clock of [`Progress::seconds`](crate::progress::Progress::seconds).
     pub seconds: Vec<(&'static str, f64)>,
     /// What could not be met, in words for the user; empty when all was.
     pub notes: Vec<String>,

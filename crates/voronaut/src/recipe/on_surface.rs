@@ -51,8 +51,8 @@ fn area(mesh: &Mesh) -> f64 {
 }
 
 /// The triangles of an equation are ours: where they meet, that is no property of what the user gave.
-fn demand_apart(input: &Manifold, meetings: &Meetings) -> Result<()> {
-    match input.equation().and_then(|_| meetings.first()) {
+fn demand_apart(manifold: &Manifold, meetings: &Meetings) -> Result<()> {
+    match manifold.equation().and_then(|_| meetings.first()) {
         None => Ok(()),
         Some(place) => {
             let help = "give an equation whose sheets stay apart, or shorter edges for its triangles";
@@ -67,16 +67,16 @@ impl<'a> Setting<'a> {
     /// # Errors
     /// [`Error::Domain`] where triangles of an equation's surface meet.
     pub(super) fn new(
-        input: &'a Manifold,
+        manifold: &'a Manifold,
         metric: &'a dyn SurfaceMetric,
         aim: Option<(&'a Expression, Norm)>,
         options: &'a MeshOptions,
         meetings: &'a Meetings,
         watch: &'a Stopwatch<'a>,
     ) -> Result<Self> {
-        demand_apart(input, meetings)?;
-        let curves = MeasuredCurves::new(input, metric);
-        Ok(Self { input, metric, aim, options, progress: watch.progress, curves, meetings, watch })
+        demand_apart(manifold, meetings)?;
+        let curves = MeasuredCurves::new(manifold, metric);
+        Ok(Self { manifold, metric, aim, options, progress: watch.progress, curves, meetings, watch })
     }
 
     /// That the work for so many vertices fits into memory.
@@ -112,7 +112,7 @@ impl<'a> Setting<'a> {
         };
         let protected = if is_sound { self.protect(&mut pass, &mut checked, &mut notes)? } else { None };
         let Checked { mesh, validity, .. } = checked;
-        demand(self.input, &mesh, &validity)?;
+        demand(self.manifold, &mesh, &validity)?;
         let (surface_net, protection) = match protected {
             Some((net, protection)) => (Some(net), Some(protection)),
             None => (self.options.net.then(|| self.net(&pass)), None),
@@ -211,10 +211,10 @@ impl<'a> Setting<'a> {
             polish_on_surface(&mut pass.dual, function, norm, patience, self.progress)
         })?;
         let (better, mesh) = (self.checked(pass)?, &checked.mesh);
-        let stray = |mesh: &Mesh| (self.input.area() - area(mesh)).abs();
-        let is_as_near = stray(&better.mesh) <= NEARLY * stray(mesh) + ROUNDING * self.input.area();
+        let stray = |mesh: &Mesh| (self.manifold.area() - area(mesh)).abs();
+        let is_as_near = stray(&better.mesh) <= NEARLY * stray(mesh) + ROUNDING * self.manifold.area();
         // Polishing takes the surface to be smooth between vertices.
-        let error = |mesh: &Mesh| Ok(interpolation_error_on(mesh, self.input, function, polishing_norm(norm))?.norm);
+        let error = |mesh: &Mesh| Ok(interpolation_error_on(mesh, self.manifold, function, polishing_norm(norm))?.norm);
         let why = if !better.faulty.is_empty() {
             format!("{} triangles would meet or fold over", better.faulty.len())
         } else if !is_as_near {
@@ -262,9 +262,9 @@ impl<'a> Setting<'a> {
         }
         self.progress.begin("fitting", 1)?;
         let options = FitOptions { stiffness: self.options.stiffness, ..FitOptions::default() };
-        let input = self.input;
-        let fine = input.equation().map(|_| self.fine_surface(mesh.points.len())).transpose()?;
-        let fitted = fit(&mesh, fine.as_ref().unwrap_or(input), &options)?.mesh;
+        let manifold = self.manifold;
+        let fine = manifold.equation().map(|_| self.fine_surface(mesh.points.len())).transpose()?;
+        let fitted = fit(&mesh, fine.as_ref().unwrap_or(manifold), &options)?.mesh;
         let found = quality::validity_on(&fitted, self.meetings);
         if found.valid {
             return Ok((fitted, found));
@@ -277,7 +277,7 @@ impl<'a> Setting<'a> {
         if self.options.hausd.is_none() && !self.options.fit {
             return Ok(None);
         }
-        quality::surface_fidelity(mesh, self.input).map(Some)
+        quality::surface_fidelity(mesh, self.manifold).map(Some)
     }
 
     /// The number of vertices, the factor on the metric for which edges then are of unit length, if it is not known, and the metric's complexity.
@@ -287,9 +287,9 @@ impl<'a> Setting<'a> {
         self.progress.begin("planning", 1)?;
         let [least, most] = MEASURING;
         let measuring = self.options.vertices.map_or(most, |count| count.saturating_mul(2).clamp(least, most));
-        let area = area_of_surface(self.input, self.metric, measuring)?;
+        let area = area_of_surface(self.manifold, self.metric, measuring)?;
         // Of the surface as it was before it was cut: vertices on its cuts count once.
-        let chi = self.input.whole().euler as f64;
+        let chi = self.manifold.whole().euler as f64;
         let extra = self.curves.extra();
         let vertices = |factor: f64| 2.0 / 3.0_f64.sqrt() * area * factor + extra * factor.sqrt() + chi;
         let (count, factor) = match (self.options.vertices, known.or(self.options.complexity.map(|all| all / area))) {
@@ -306,7 +306,7 @@ impl<'a> Setting<'a> {
         };
         // Patches with a border have their vertices there.
         let is_closed = |component: &Component| component.borders == 0;
-        let least = 4 * self.input.components().into_iter().filter(is_closed).count();
+        let least = 4 * self.manifold.components().into_iter().filter(is_closed).count();
         self.demand_memory(count)?;
         let scale = if factor > 0.0 { factor } else { 1.0 };
         Ok(SurfacePlan { count: count.max(least), scale, complexity: area })
@@ -326,18 +326,19 @@ mod tests {
     #[test]
     fn polishing_lowers_the_error_on_surfaces() {
         let cube = Manifold::of(&crate::test_cases::cube(9, 0.0)).unwrap();
-        for (input, text) in [(cube, "tanh(6*(x + y*z - 0.5))")] {
+        for (manifold, text) in [(cube, "tanh(6*(x + y*z - 0.5))")] {
             let spec = Spec::parse(&format!("hessian:{text}")).unwrap();
             let Spec::Hessian(function) = &spec else { panic!("of a function") };
             let (count, norm) = (500, Norm::default());
             let at = GradedAt::of(Some(count), None);
-            let metric = metric_on_surface(SurfaceSource::Named(&spec), &input, &MetricOptions::default(), at).unwrap();
+            let metric =
+                metric_on_surface(SurfaceSource::Named(&spec), &manifold, &MetricOptions::default(), at).unwrap();
             let made = |polish: usize| {
                 let options = MeshOptions { vertices: Some(count), polish, lloyd: 10, ..MeshOptions::default() };
-                mesh_surface(&input, metric.as_ref(), Some((function, norm)), &options, &Silent).unwrap()
+                mesh_surface(&manifold, metric.as_ref(), Some((function, norm)), &options, &Silent).unwrap()
             };
             let (plain, polished) = (made(0), made(10));
-            let error = |made: &Meshed| interpolation_error_on(&made.mesh, &input, function, norm).unwrap().norm;
+            let error = |made: &Meshed| interpolation_error_on(&made.mesh, &manifold, function, norm).unwrap().norm;
             let figures = polished.polished.as_ref().unwrap();
             assert!(plain.polished.is_none() && polished.mesh.points.len() == plain.mesh.points.len());
             assert!(figures.moves > 0 && figures.error.windows(2).all(|two| two[1] <= two[0]), "{figures:?}");
@@ -346,9 +347,9 @@ mod tests {
             assert!(after < 0.95 * before, "{text}: {before} {after}");
             // Where it is seen to second order from a triangle, and by seven values, it is what walks to the surface find.
             assert!((first / before - 1.0).abs() < 0.05 && (last / after - 1.0).abs() < 0.05, "{first} {last}");
-            assert!(quality::validity_on(&polished.mesh, &Meetings::of(input.whole_mesh())).valid);
+            assert!(quality::validity_on(&polished.mesh, &Meetings::of(manifold.whole_mesh())).valid);
             for &p in &polished.mesh.points {
-                let place = input.closest(p.into()).unwrap();
+                let place = manifold.closest(p.into()).unwrap();
                 assert!(place.position.distance(p.into()) < 1e-9, "{p:?}");
             }
         }
@@ -361,17 +362,18 @@ mod tests {
         for p in &mut bumpy.points {
             p[2] = 0.02 * (25.0 * p[0]).sin() * (25.0 * p[1]).sin();
         }
-        let input = Manifold::of(&bumpy).unwrap();
+        let manifold = Manifold::of(&bumpy).unwrap();
         let spec = Spec::parse("hessian:tanh(10*(x + 0.1*sin(5*y) - 0.5 + z))").unwrap();
         let Spec::Hessian(function) = &spec else { panic!("of a function") };
         let at = GradedAt::of(Some(300), None);
-        let metric = metric_on_surface(SurfaceSource::Named(&spec), &input, &MetricOptions::default(), at).unwrap();
+        let metric = metric_on_surface(SurfaceSource::Named(&spec), &manifold, &MetricOptions::default(), at).unwrap();
         let made = |polish: usize| {
             let options = MeshOptions { vertices: Some(300), polish, lloyd: 10, ..MeshOptions::default() };
-            mesh_surface(&input, metric.as_ref(), Some((function, Norm::default())), &options, &Silent).unwrap()
+            mesh_surface(&manifold, metric.as_ref(), Some((function, Norm::default())), &options, &Silent).unwrap()
         };
         let (plain, polished) = (made(0), made(10));
-        let error = |made: &Meshed| interpolation_error_on(&made.mesh, &input, function, Norm::default()).unwrap().norm;
+        let error =
+            |made: &Meshed| interpolation_error_on(&made.mesh, &manifold, function, Norm::default()).unwrap().norm;
         assert!(error(&polished) <= error(&plain));
         assert!(polished.notes.iter().any(|note| note.contains("too uneven")), "{:?}", polished.notes);
     }

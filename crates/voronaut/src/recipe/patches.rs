@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// The seeds of a cut surface: those on features, with a place on each side, and then those inside patches, with one each.
 pub(super) struct Patched<'a> {
-    pub(super) input: &'a Manifold,
+    pub(super) manifold: &'a Manifold,
     pub(super) features: &'a FeatureSeeds,
     /// Of the places on features, the seed that each belongs to.
     pub(super) owners: &'a [u32],
@@ -25,11 +25,11 @@ impl Patched<'_> {
 
     /// One mesh of the triangles of all patches, with features, labels and what is required.
     pub(super) fn mesh(&self, places: &[Place], triangles: &[[u32; 3]]) -> Mesh {
-        let t = self.input.topology();
+        let t = self.manifold.topology();
         let on_features = self.features.seeds.iter().map(|seed| seed.places[0].position);
         let inside = places[self.owners.len()..].iter().map(|place| place.position);
         let points: Vec<[f64; 3]> = on_features.chain(inside).map(Point3::to_array).collect();
-        let point_label = |v: VertexId| self.input.point_labels()[v.index()];
+        let point_label = |v: VertexId| self.manifold.point_labels()[v.index()];
         let mut point_labels: Vec<i32> =
             self.features.seeds.iter().map(|seed| seed.stop.map_or(0, point_label)).collect();
         point_labels.resize(points.len(), 0);
@@ -47,7 +47,7 @@ impl Patched<'_> {
 
     /// Edges of features, corners, and what is required.
     fn mark(&self, mesh: &mut Mesh) {
-        let features = self.input.features();
+        let features = self.manifold.features();
         for &FeatureEdge { ends, mark, .. } in &self.features.edges {
             let i = mesh.edges.len() as u32;
             mesh.edges.push(ends);
@@ -59,17 +59,17 @@ impl Patched<'_> {
         let seed_at: BTreeMap<VertexId, u32> = stops.collect();
         let seeds = |list: &[VertexId]| list.iter().filter_map(|v| seed_at.get(v).copied()).collect();
         mesh.corners = seeds(&features.corners);
-        mesh.required_points = seeds(self.input.required_points());
+        mesh.required_points = seeds(self.manifold.required_points());
         let required: BTreeSet<[u32; 3]> = self.required_triangles(&seed_at).into_iter().collect();
         let is_required = |t: &[u32; 3]| !required.is_empty() && required.contains(&in_order(*t));
         mesh.required_triangles = (0..).zip(&mesh.triangles).filter(|(_, t)| is_required(t)).map(|(i, _)| i).collect();
     }
 
     fn required_triangles(&self, seed_at: &BTreeMap<VertexId, u32>) -> Vec<[u32; 3]> {
-        let surface = self.input;
+        let surface = self.manifold;
         let of = |&f| {
             let [a, b, c] =
-                surface.topology().corners(f).map(|v| seed_at.get(&self.input.seams().original(v)).copied());
+                surface.topology().corners(f).map(|v| seed_at.get(&self.manifold.seams().original(v)).copied());
             Some(in_order([a?, b?, c?]))
         };
         surface.required_triangles().iter().filter_map(of).collect()

@@ -63,7 +63,7 @@ impl Job<'_> {
         let size = canvas::size_for(seeds.len(), self.options.canvas_size);
         let resolved = resolve(Canvas::intrinsic(plan.domain.planar(), field, size)?, field, &seeds, RESOLVE_ROUNDS)?;
         let diagram = Diagram::new(&resolved.canvas, field, &seeds)?;
-        let nerve = super::dual(&diagram, field, Road::Both, self.progress).raw_nerve;
+        let nerve = super::dual(&diagram, Road::Both, self.progress).raw_nerve;
         let canvas_vertices = resolved.canvas.vertex_count();
         Ok(figures::CanvasNerve { canvas_vertices, rounds: resolved.rounds, unwitnessed: resolved.unwitnessed, nerve })
     }
@@ -128,7 +128,7 @@ impl<'a> Setting<'a> {
     fn raw_nerve(&self, pass: &Pass, net: &Net<Place>) -> Result<figures::CanvasNerve> {
         let places = pass.dual.places();
         let size = self.canvas_size(places.len());
-        let (canvas, at) = Canvas::on_surface(canvas::Kind::Intrinsic, self.input, self.metric, size, places)?;
+        let (canvas, at) = Canvas::on_surface(canvas::Kind::Intrinsic, self.manifold, self.metric, size, places)?;
         let diagram = SurfaceDiagram::on_surface(&canvas, &at, Method::default())?;
         let exact: Vec<[u32; 3]> = net.interior().map(|ball| ball.corners).collect();
         let nerve = compared(&diagram, &exact);

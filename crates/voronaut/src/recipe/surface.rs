@@ -34,14 +34,14 @@ const IDLE_ROUNDS: usize = 2;
 /// The metric is invalid somewhere; the work would exceed the memory limit; there is no valid mesh with the vertices asked for;
 /// options that are for the plane; curved triangles of a surface without an equation; the function is not finite at a vertex.
 pub fn mesh_surface(
-    input: &Manifold,
+    manifold: &Manifold,
     metric: &dyn SurfaceMetric,
     aim: Option<(&Expression, Norm)>,
     options: &MeshOptions,
     progress: &dyn Progress,
 ) -> Result<Meshed> {
     options.geodesic.demand_diagrams()?;
-    demand_possible_on(input, options)?;
+    demand_possible_on(manifold, options)?;
     protection::demand_possible(options)?;
     options
         .idle(Task {
@@ -54,14 +54,14 @@ pub fn mesh_surface(
         .try_for_each(Idle::demand_unset)?;
     let is_open = options.vertices.is_none() && options.complexity.is_none();
     let asked = options.hausd.filter(|&hausd| is_open && hausd > 0.0);
-    let closer = asked.map(|hausd| Closer::new(metric, input, hausd)).transpose()?;
+    let closer = asked.map(|hausd| Closer::new(metric, manifold, hausd)).transpose()?;
     let metric = closer.as_ref().map_or(metric, |closer| closer as &dyn SurfaceMetric);
-    let (meetings, watch) = (Meetings::of(input.whole_mesh()), Stopwatch::new(progress));
+    let (meetings, watch) = (Meetings::of(manifold.whole_mesh()), Stopwatch::new(progress));
     let (mut logs, mut scale) = (Vec::new(), None);
     let (mut least, mut idle) = (f64::INFINITY, 0);
     for round in 1.. {
-        let finer = Finer { field: metric, surface: input.surface(), logs: &logs };
-        let setting = Setting::new(input, &finer, aim, options, &meetings, &watch)?;
+        let finer = Finer { field: metric, surface: manifold.surface(), logs: &logs };
+        let setting = Setting::new(manifold, &finer, aim, options, &meetings, &watch)?;
         let plan = watch.time("plan", || setting.plan(scale))?;
         let (mut meshed, fidelity) = setting.meshed(plan.count, plan.scale)?;
         let distance = fidelity.as_ref().map_or(0.0, |found| found.both.hausdorff);
@@ -73,13 +73,13 @@ pub fn mesh_surface(
             meshed.notes.push(format!("mesh and surface are {distance:.3e} apart where `hausd` asks for {most:.3e}"));
         }
         if ratio <= 1.0 || is_last {
-            watch.time("curve", || curve_onto(&mut meshed, input, &meetings, options.order))?;
+            watch.time("curve", || curve_onto(&mut meshed, manifold, &meetings, options.order))?;
             let fidelity = if options.order > 1 { setting.fidelity(&meshed.mesh)? } else { fidelity };
             let closed_form_scale = options.vertices.map(|count| closed_form_scale(count, plan.complexity));
             return Ok(Meshed { fidelity, closed_form_scale, finer: logs, seconds: watch.seconds(), ..meshed });
         }
         (least, scale) = (least.min(ratio), Some(plan.scale));
-        logs = watch.time("check", || too_far(&meshed.mesh, input, &finer, distance / ratio, fidelity.as_ref()))?;
+        logs = watch.time("check", || too_far(&meshed.mesh, manifold, &finer, distance / ratio, fidelity.as_ref()))?;
     }
     unreachable!("the last round returns")
 }
@@ -115,27 +115,27 @@ impl Adaptive for Manifold {
 }
 
 fn mesh_by(
-    input: &Manifold,
+    manifold: &Manifold,
     source: SurfaceSource,
     aim: Option<(&Expression, Norm)>,
     options: &LoopOptions,
     progress: &dyn Progress,
 ) -> Result<Meshed> {
-    let metric = metric_on_surface(source, input, &options.metric, options.graded_at())?;
-    mesh_surface(input, metric.as_ref(), aim, &options.mesh, progress)
+    let metric = metric_on_surface(source, manifold, &options.metric, options.graded_at())?;
+    mesh_surface(manifold, metric.as_ref(), aim, &options.mesh, progress)
 }
 
 /// The logarithms of factors with which the metric will be fine enough for a distance where the mesh is farther from the surface.
 fn too_far(
     mesh: &Mesh,
-    input: &Manifold,
+    manifold: &Manifold,
     finer: &Finer,
     allowed: f64,
     found: Option<&SurfaceFidelity>,
 ) -> Result<Vec<f64>> {
-    let mut distances = distances_around(mesh, input);
+    let mut distances = distances_around(mesh, manifold);
     if let Some(Deviation { at: Position::Space(at), hausdorff, .. }) = found.map(|found| found.both) {
-        for v in input.topology().corners(input.closest(at.into())?.face) {
+        for v in manifold.topology().corners(manifold.closest(at.into())?.face) {
             distances[v.index()] = distances[v.index()].max(hausdorff);
         }
     }

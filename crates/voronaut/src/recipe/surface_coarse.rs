@@ -49,7 +49,7 @@ impl<'a> Setting<'a> {
     /// of the surface's own triangles. Of a surface with more vertices than are wanted these are made first: to get rid of the others takes longest.
     pub(super) fn started_from_coarser(&self, count: usize, scale: f64, reseed: &mut Reseed) -> Result<Started> {
         let is_plain = self.options.seeding == Seeding::Sizing && self.options.centroid == Centroid::Tangent;
-        let is_large = self.input.positions().len() > count;
+        let is_large = self.manifold.positions().len() > count;
         let mut direct = None;
         if is_large || !is_plain {
             direct = Some(self.started_from_surface(count, scale, reseed)?);
@@ -114,7 +114,7 @@ impl<'a> Setting<'a> {
                 factor,
                 count: mesh.count,
             };
-            let adapted = halved(self.input, self.metric, &halving);
+            let adapted = halved(self.manifold, self.metric, &halving);
             if !adapted.stuck.is_empty() || adapted.staying != given.len() {
                 return Ok(None);
             }
@@ -164,7 +164,7 @@ impl Levels {
     /// The surface's own triangles, adapted to a mesh.
     fn adapted(&self, setting: &Setting, mesh: &Level, factor: f64) -> Option<Adapted> {
         let (given, held) = (self.given_to(mesh), Holding::Near(&[]));
-        adapted(setting.input, setting.metric, &Wanted { given: &given, factor, count: mesh.count, held })
+        adapted(setting.manifold, setting.metric, &Wanted { given: &given, factor, count: mesh.count, held })
     }
 
     /// The finest triangulation contracted to a coarser one.
@@ -172,6 +172,6 @@ impl Levels {
         let kept = (0..).zip(self.are_in(&self.meshes[0], mesh)).filter(|(_, is_kept)| *is_kept);
         let kept: Vec<VertexId> = kept.map(|(i, _)| VertexId(i)).collect();
         let triangles = (finest.topology.clone(), finest.places.clone());
-        contracted(setting.input, setting.metric, factor, triangles, &kept, kept.len(), mesh.count)
+        contracted(setting.manifold, setting.metric, factor, triangles, &kept, kept.len(), mesh.count)
     }
 }

@@ -45,34 +45,34 @@ type Sample<'a> = dyn FnOnce(&[Point3]) -> Result<SolutionValues> + 'a;
 /// smoothing asks for too many sweeps; the gradation is no factor.
 pub fn metric_on_surface(
     source: SurfaceSource,
-    input: &Manifold,
+    manifold: &Manifold,
     options: &MetricOptions,
     at: GradedAt,
 ) -> Result<Box<dyn SurfaceMetric>> {
     options.bounds.check()?;
     let has_vertices = !matches!(source, SurfaceSource::Named(_) | SurfaceSource::Solution(..));
-    let (field, scale) = named(source, input, options, at)?;
+    let (field, scale) = named(source, manifold, options, at)?;
     let field = within(field, options.bounds.times(scale))?;
     let vertices = |count: usize| if has_vertices { 0 } else { count };
     let field = match options.smooth_metric {
         0 => field,
-        sweeps => Box::new(smoothed(field.as_ref(), input, vertices(BACKGROUND_VERTICES), sweeps)?),
+        sweeps => Box::new(smoothed(field.as_ref(), manifold, vertices(BACKGROUND_VERTICES), sweeps)?),
     };
     let Some(factor) = options.gradation else { return Ok(field) };
-    let count = vertices(count_for(field.as_ref(), input, at)?);
-    let once = Background::new(input, field.as_ref(), count)?.graded(field.as_ref(), factor, at)?;
+    let count = vertices(count_for(field.as_ref(), manifold, at)?);
+    let once = Background::new(manifold, field.as_ref(), count)?.graded(field.as_ref(), factor, at)?;
     if has_vertices {
         return Ok(Box::new(once));
     }
     // Where the metric is to be finer than it was, triangles that are even in what it was are too large.
-    let background = Background::new(input, &once, count_for(&once, input, at)?)?;
+    let background = Background::new(manifold, &once, count_for(&once, manifold, at)?)?;
     Ok(Box::new(background.graded(field.as_ref(), factor, at)?))
 }
 
 /// The field, and the multiple in which limits on sizes are meant: one, but for second derivatives, whose units are the function's.
 pub(super) fn named(
     source: SurfaceSource,
-    input: &Manifold,
+    manifold: &Manifold,
     options: &MetricOptions,
     at: GradedAt,
 ) -> Result<(Box<dyn SurfaceMetric>, f64)> {
@@ -80,25 +80,25 @@ pub(super) fn named(
     let values = |values| Solution { dimension: 3, values };
     match source {
         SurfaceSource::Named(Spec::Hessian(function)) => {
-            within_surface(Box::new(CovariantHessian::new(function, input, options.norm)?), input, at)
+            within_surface(Box::new(CovariantHessian::new(function, manifold, options.norm)?), manifold, at)
         }
-        SurfaceSource::Named(spec) => plain(field(spec, input, Bounds::default())?),
-        SurfaceSource::Values(solution) => plain(Box::new(field_of_values(solution, input)?)),
+        SurfaceSource::Named(spec) => plain(field(spec, manifold, Bounds::default())?),
+        SurfaceSource::Values(solution) => plain(Box::new(field_of_values(solution, manifold)?)),
         SurfaceSource::Samples(sample) => {
-            let sampled = values(sample(input.positions())?);
-            plain(Box::new(Sampled::from_solution(input.surface(), &sampled)?))
+            let sampled = values(sample(manifold.positions())?);
+            plain(Box::new(Sampled::from_solution(manifold.surface(), &sampled)?))
         }
         SurfaceSource::Implied => {
-            let vertices = TangentPlanes::to_join(input);
-            plain(Box::new(Sampled::new(input.surface(), &vertices.extended(&vertices.implied()?))?))
+            let vertices = TangentPlanes::to_join(manifold);
+            plain(Box::new(Sampled::new(manifold.surface(), &vertices.extended(&vertices.implied()?))?))
         }
-        SurfaceSource::Function(given) => within_surface(Box::new(recovered(given, input, options)?), input, at),
+        SurfaceSource::Function(given) => within_surface(Box::new(recovered(given, manifold, options)?), manifold, at),
         SurfaceSource::Solution(mesh, given) => {
             let own = Manifold::of(mesh)?.cut(&FeatureOptions::default())?;
             match given {
                 SolutionValues::Scalar(given) => {
                     let field = Elsewhere { field: recovered(given, &own, options)?, there: own };
-                    within_surface(Box::new(field), input, at)
+                    within_surface(Box::new(field), manifold, at)
                 }
                 _ => plain(Box::new(Elsewhere { field: field_of_values(&values(given.clone()), &own)?, there: own })),
             }
@@ -107,13 +107,13 @@ pub(super) fn named(
 }
 
 /// The metric of second derivatives recovered from values at the vertices that a surface had before it was cut.
-fn recovered(given: &[f64], input: &Manifold, options: &MetricOptions) -> Result<Sampled> {
-    recovered_on(input, &spread_values(given, input)?, options.norm)
+fn recovered(given: &[f64], manifold: &Manifold, options: &MetricOptions) -> Result<Sampled> {
+    recovered_on(manifold, &spread_values(given, manifold)?, options.norm)
 }
 
 /// Values at the vertices that a surface had before it was cut, at those that it has now.
-pub(super) fn spread_values(given: &[f64], input: &Manifold) -> Result<Vec<f64>> {
-    let spread = input.spread(&Solution { dimension: 3, values: SolutionValues::Scalar(given.to_vec()) })?;
+pub(super) fn spread_values(given: &[f64], manifold: &Manifold) -> Result<Vec<f64>> {
+    let spread = manifold.spread(&Solution { dimension: 3, values: SolutionValues::Scalar(given.to_vec()) })?;
     let SolutionValues::Scalar(spread) = spread.values else { unreachable!("of the type that was given") };
     Ok(spread)
 }
@@ -137,29 +137,29 @@ impl SurfaceMetric for Elsewhere {
 /// multiple.
 fn within_surface(
     field: Box<dyn SurfaceMetric>,
-    input: &Manifold,
+    manifold: &Manifold,
     at: GradedAt,
 ) -> Result<(Box<dyn SurfaceMetric>, f64)> {
     let scale = match at {
         GradedAt::Scale(scale) => scale,
-        GradedAt::Complexity(target) => target / area_of_surface(input, field.as_ref(), FEWEST)?,
+        GradedAt::Complexity(target) => target / area_of_surface(manifold, field.as_ref(), FEWEST)?,
     };
-    let extent = input.bounds().extent();
+    let extent = manifold.bounds().extent();
     let h_max = Some(LONGEST * extent.x.max(extent.y).max(extent.z) * scale.sqrt());
     Ok((within(field, Bounds { h_max, ..Bounds::default() })?, scale))
 }
 
 /// How many vertices the triangles have on which a metric is graded.
-fn count_for(field: &dyn SurfaceMetric, input: &Manifold, at: GradedAt) -> Result<usize> {
+fn count_for(field: &dyn SurfaceMetric, manifold: &Manifold, at: GradedAt) -> Result<usize> {
     let complexity = match at {
         GradedAt::Complexity(target) => target,
-        GradedAt::Scale(scale) => scale * area_of_surface(input, field, FEWEST)?,
+        GradedAt::Scale(scale) => scale * area_of_surface(manifold, field, FEWEST)?,
     };
     Ok(background_vertices(complexity, FEWEST))
 }
 
-fn smoothed(field: &dyn SurfaceMetric, input: &Manifold, vertices: usize, sweeps: u32) -> Result<OnBackground> {
-    let background = Background::new(input, field, vertices)?;
+fn smoothed(field: &dyn SurfaceMetric, manifold: &Manifold, vertices: usize, sweeps: u32) -> Result<OnBackground> {
+    let background = Background::new(manifold, field, vertices)?;
     let logs = background.tensors(field).par_iter().map(|tensor| tensor.log()).collect();
     Ok(OnBackground::new(&background.draped, swept(&background.vertices.around(), logs, sweeps)?, field))
 }
@@ -172,8 +172,8 @@ struct Background<'s> {
 
 impl<'s> Background<'s> {
     /// Even in a metric, with so many vertices, and all that the surface has.
-    fn new(input: &'s Manifold, metric: &'s dyn SurfaceMetric, vertices: usize) -> Result<Self> {
-        let draped = even_on_surface(input, metric, vertices)?;
+    fn new(manifold: &'s Manifold, metric: &'s dyn SurfaceMetric, vertices: usize) -> Result<Self> {
+        let draped = even_on_surface(manifold, metric, vertices)?;
         let t = draped.topology();
         let slots = t.vertex_slots() as u32;
         let planes = (0..slots).into_par_iter().map(|v| draped.plane(VertexId(v))).collect();
@@ -223,7 +223,7 @@ impl OnBackground {
         let t = draped.topology();
         let (faces, corners): (Vec<FaceId>, Vec<[u32; 3]>) = t.faces().map(|f| (f, t.corners(f).map(|v| v.0))).unzip();
         let positions: Vec<Point3> = (0..logs.len() as u32).map(|v| draped.position(VertexId(v))).collect();
-        let homes = draped.input().topology().face_slots();
+        let homes = draped.manifold().topology().face_slots();
         let mut pairs: Vec<(u32, u32)> = faces.iter().zip(0..).map(|(&f, i)| (draped.home(f).0, i)).collect();
         pairs.sort_unstable();
         let at_home = Rows::new(homes, pairs.into_iter());
@@ -276,8 +276,8 @@ mod tests {
         TangentPlane::new(place.normal).restrict(field.at(place))
     }
 
-    fn places(input: &Manifold) -> impl Iterator<Item = Place> {
-        input.topology().faces().map(|f| input.place(f, [0.2, 0.3, 0.5]))
+    fn places(manifold: &Manifold) -> impl Iterator<Item = Place> {
+        manifold.topology().faces().map(|f| manifold.place(f, [0.2, 0.3, 0.5]))
     }
 
     /// The sides of a cube, each by itself.
@@ -287,15 +287,15 @@ mod tests {
 
     #[test]
     fn uniform_metrics_stay() {
-        for input in [sides(3), Manifold::shape("torus:2,0.7", Some(0.5)).unwrap()] {
+        for manifold in [sides(3), Manifold::shape("torus:2,0.7", Some(0.5)).unwrap()] {
             for options in [
                 MetricOptions { gradation: Some(1.2), ..MetricOptions::default() },
                 MetricOptions { smooth_metric: 7, ..MetricOptions::default() },
             ] {
                 let at = GradedAt::Complexity(200.0);
                 let uniform = spec("formula:9; 0; 9; 0; 0; 9");
-                let field = metric_on_surface(SurfaceSource::Named(&uniform), &input, &options, at).unwrap();
-                for place in places(&input) {
+                let field = metric_on_surface(SurfaceSource::Named(&uniform), &manifold, &options, at).unwrap();
+                for place in places(&manifold) {
                     let d = tangential(field.as_ref(), &place) + Tensor::IDENTITY * -9.0;
                     assert!(d.xx.abs() + d.xy.abs() + d.yy.abs() < 1e-9, "{d:?}");
                 }
@@ -306,16 +306,17 @@ mod tests {
     /// Sizes that are the same in all directions are graded by lengths alone, over creases as on flat sides.
     #[test]
     fn sizes_are_graded_as_sizes() {
-        let input = sides(6);
+        let manifold = sides(6);
         let mut sizes: Vec<f64> =
-            input.positions().iter().map(|p| if p.x + p.y < 0.1 && p.z > 0.4 { 0.01 } else { 2.0 }).collect();
+            manifold.positions().iter().map(|p| if p.x + p.y < 0.1 && p.z > 0.4 { 0.01 } else { 2.0 }).collect();
         let values = Solution { dimension: 3, values: SolutionValues::Scalar(sizes.clone()) };
         let options = MetricOptions { gradation: Some(1.4), ..MetricOptions::default() };
-        let field = metric_on_surface(SurfaceSource::Values(&values), &input, &options, GradedAt::Scale(1.0)).unwrap();
-        grade(input.surface(), &mut sizes, 1.4).unwrap();
+        let field =
+            metric_on_surface(SurfaceSource::Values(&values), &manifold, &options, GradedAt::Scale(1.0)).unwrap();
+        grade(manifold.surface(), &mut sizes, 1.4).unwrap();
         let mut changed = 0;
-        for v in input.topology().vertices() {
-            let place = input.place_of(v).unwrap();
+        for v in manifold.topology().vertices() {
+            let place = manifold.place_of(v).unwrap();
             let found = tangential(field.as_ref(), &place);
             let size = sizes[v.index()];
             changed += usize::from(size > 0.011 && size < 1.9);
@@ -329,18 +330,18 @@ mod tests {
 
     #[test]
     fn graded_metrics_are_finer_and_in_the_units_given() {
-        let input = Manifold::shape("sphere:1", Some(0.3)).unwrap();
+        let manifold = Manifold::shape("sphere:1", Some(0.3)).unwrap();
         let jump = spec("formula:if(x<0,400,1); 0; if(x<0,4,1); 0; 0; 4");
         let plain = MetricOptions::default();
         let graded = MetricOptions { gradation: Some(1.3), ..plain.clone() };
         let at = GradedAt::Complexity(3000.0);
-        let of = |options| metric_on_surface(SurfaceSource::Named(&jump), &input, options, at).unwrap();
+        let of = |options| metric_on_surface(SurfaceSource::Named(&jump), &manifold, options, at).unwrap();
         let (before, after) = (of(&plain), of(&graded));
         let mut finer = 0;
         // The vertices of the surface are those of any background, and nothing is between them there.
-        for v in input.topology().vertices() {
-            let place = input.place_of(v).unwrap();
-            let place = input.lift(&place, place.position).unwrap();
+        for v in manifold.topology().vertices() {
+            let place = manifold.place_of(v).unwrap();
+            let place = manifold.lift(&place, place.position).unwrap();
             let [m, n] = [&before, &after].map(|field| tangential(field.as_ref(), &place));
             assert!(n.determinant() > (1.0 - 1e-9) * m.determinant(), "{} {m:?} {n:?}", place.position);
             finer += usize::from(n.determinant() > 1.5 * m.determinant());
@@ -351,21 +352,22 @@ mod tests {
     /// What a solver finds on a mesh of the surface makes the metric that its formula has.
     #[test]
     fn solutions_on_other_meshes_make_metrics() {
-        let input = Manifold::shape("sphere:1", Some(0.3)).unwrap();
+        let manifold = Manifold::shape("sphere:1", Some(0.3)).unwrap();
         let mesh = crate::manifold::surface::sphere(1.0, 0.08).unwrap().to_mesh();
         let values = mesh.points.iter().map(|p| (2.0 * p[0]).sin()).collect();
         let options = MetricOptions { norm: Norm::new(f64::INFINITY).unwrap(), ..MetricOptions::default() };
         let at = GradedAt::Scale(1.0);
         let solution = SolutionValues::Scalar(values);
-        let found = metric_on_surface(SurfaceSource::Solution(&mesh, &solution), &input, &options, at).unwrap();
-        let truth = metric_on_surface(SurfaceSource::Named(&spec("hessian:sin(2*x)")), &input, &options, at).unwrap();
+        let found = metric_on_surface(SurfaceSource::Solution(&mesh, &solution), &manifold, &options, at).unwrap();
+        let truth =
+            metric_on_surface(SurfaceSource::Named(&spec("hessian:sin(2*x)")), &manifold, &options, at).unwrap();
         let [mut sum, mut worst] = [0.0_f64; 2];
-        for place in places(&input) {
-            let place = input.lift(&place, place.position).unwrap();
+        for place in places(&manifold) {
+            let place = manifold.lift(&place, place.position).unwrap();
             let [found, truth] = [&found, &truth].map(|field| tangential(field.as_ref(), &place).eigen().large);
             (sum, worst) = (sum + truth, worst.max((found - truth).abs()));
         }
-        let mean = sum / places(&input).count() as f64;
+        let mean = sum / places(&manifold).count() as f64;
         assert!(worst < 0.15 * mean, "{worst} of {mean}");
     }
 }

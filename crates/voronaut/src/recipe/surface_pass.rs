@@ -70,7 +70,7 @@ impl Parts {
 
 /// What passes are made with.
 pub(super) struct Setting<'a> {
-    pub(super) input: &'a Manifold,
+    pub(super) manifold: &'a Manifold,
     pub(super) metric: &'a dyn SurfaceMetric,
     /// The function that the mesh is for, if it is for one, and the norm.
     pub(super) aim: Option<(&'a Expression, Norm)>,
@@ -84,7 +84,7 @@ pub(super) struct Setting<'a> {
 
 /// What a pass has come to.
 pub(super) struct Pass<'a> {
-    input: &'a Manifold,
+    manifold: &'a Manifold,
     pub(super) dual: SurfaceDual<'a>,
     features: FeatureSeeds,
     owners: Vec<u32>,
@@ -163,7 +163,7 @@ impl<'a> Setting<'a> {
         let parts = Parts::of(self.options.effort, is_even);
         let (dual, relaxed) = self.watch.time("relax", || self.relaxed(adapted, scale, steps, parts, own.as_ref()))?;
         let settled = Settled { canvas: own.map(|canvas| canvas.figures()).or(canvas), ..Settled::default() };
-        Ok(Pass { input: self.input, dual, features, owners, relaxed, settled })
+        Ok(Pass { manifold: self.manifold, dual, features, owners, relaxed, settled })
     }
 
     /// Settles the edges of a pass that has made a mesh, and says whether any may be another one now.
@@ -175,7 +175,7 @@ impl<'a> Setting<'a> {
     }
 
     fn dual_of(&self, Adapted { places, staying, topology, .. }: Adapted, scale: f64) -> Result<SurfaceDual<'a>> {
-        SurfaceDual::new(self.input, self.metric, scale, places, staying, topology)
+        SurfaceDual::new(self.manifold, self.metric, scale, places, staying, topology)
     }
 
     /// In the metric whose factor is fit; with steps, relaxed in parts, between which vertices are exchanged and the factor made fit.
@@ -229,7 +229,7 @@ impl<'a> Setting<'a> {
                     break;
                 }
                 let factor = dual.factor();
-                let other = exchanged(self.input, self.metric, factor, dual.places(), dual.topology(), staying);
+                let other = exchanged(self.manifold, self.metric, factor, dual.places(), dual.topology(), staying);
                 dual = self.dual_of(other, factor)?;
                 dual.flip_all();
             }
@@ -245,7 +245,7 @@ impl<'a> Setting<'a> {
         let (canvas, at) = self.canvas(total, &given)?;
         let mut diagram = SurfaceDiagram::on_surface(&canvas, &at, self.options.geodesic)?;
         let draped = canvas.draped();
-        let required = self.input.required_triangles();
+        let required = self.manifold.required_triangles();
         let may_hold = |v: VertexId| {
             !draped.topology().is_border_vertex(v) && required.binary_search(&draped.place(v).face).is_err()
         };
@@ -255,7 +255,7 @@ impl<'a> Setting<'a> {
         let seeds: Vec<VertexId> = (0..diagram.colours() as u32).filter_map(|colour| diagram.seed(colour)).collect();
         let slots = (0..draped.topology().vertex_slots() as u32).map(VertexId);
         let triangles = (draped.topology().clone(), slots.map(|v| *draped.place(v)).collect());
-        let adapted = contracted(self.input, self.metric, scale, triangles, &seeds, owners.len(), seeds.len());
+        let adapted = contracted(self.manifold, self.metric, scale, triangles, &seeds, owners.len(), seeds.len());
         if adapted.stuck.is_empty() {
             return Ok(Started { features, owners, adapted, is_even: false, canvas: Some(canvas.figures()) });
         }
@@ -277,7 +277,7 @@ impl<'a> Setting<'a> {
 
     /// The surface's own triangles, adapted. Where vertices of a curve cannot be contracted without folds, all of them become seeds.
     pub(super) fn started_from_surface(&self, count: usize, scale: f64, reseed: &mut Reseed) -> Result<Started> {
-        let curves = &self.input.features().curves;
+        let curves = &self.manifold.features().curves;
         reseed.density.resize(curves.len(), 1);
         if reseed.is_last {
             reseed.density.fill(ALL_VERTICES);
@@ -286,11 +286,11 @@ impl<'a> Setting<'a> {
             let (features, given, owners, total) = self.featured(count, scale, reseed);
             let held = if reseed.is_last { Holding::All } else { Holding::Near(&reseed.held) };
             let wanted = Wanted { given: &given, factor: scale, count: total, held };
-            let Some(adapted) = adapted(self.input, self.metric, &wanted) else { break };
+            let Some(adapted) = adapted(self.manifold, self.metric, &wanted) else { break };
             if adapted.stuck.is_empty() {
                 return Ok(Started { features, owners, adapted, is_even: false, canvas: None });
             }
-            let stuck: BTreeSet<VertexId> = adapted.stuck.iter().map(|&v| self.input.seams().original(v)).collect();
+            let stuck: BTreeSet<VertexId> = adapted.stuck.iter().map(|&v| self.manifold.seams().original(v)).collect();
             for (curve, density) in curves.iter().zip(&mut reseed.density) {
                 let is_stuck = curve.edges.iter().any(|edge| stuck.contains(&edge.from) || stuck.contains(&edge.to));
                 *density = if is_stuck { ALL_VERTICES } else { *density };
@@ -302,7 +302,7 @@ impl<'a> Setting<'a> {
     fn canvas(&self, count: usize, seeds: &[Place]) -> Result<(Canvas<Draped<'a>>, Vec<VertexId>)> {
         self.progress.begin("canvas", 1)?;
         let size = self.canvas_size(count);
-        Canvas::on_surface(self.options.canvas, self.input, self.metric, size, seeds)
+        Canvas::on_surface(self.options.canvas, self.manifold, self.metric, size, seeds)
     }
 
     /// The canvas that cells are coloured on, if seeds are moved to centroids there.
@@ -364,7 +364,7 @@ impl<'a> Setting<'a> {
 
 impl Pass<'_> {
     fn patched(&self) -> Patched<'_> {
-        Patched { input: self.input, features: &self.features, owners: &self.owners }
+        Patched { manifold: self.manifold, features: &self.features, owners: &self.owners }
     }
 
     /// The vertex of the mesh that a seed is.
@@ -410,7 +410,7 @@ impl Pass<'_> {
     /// What to do differently: more of the surface kept around faulty triangles, more seeds on the curves that one touches.
     pub(super) fn reseed(&self, faulty: &[u32], before: Reseed) -> Reseed {
         let mut density = before.density;
-        density.resize(self.input.features().curves.len(), 1);
+        density.resize(self.manifold.features().curves.len(), 1);
         let triangles = self.dual.triangles();
         let mut curves: BTreeSet<usize> = BTreeSet::new();
         for corners in faulty.iter().map(|&t| triangles[t as usize]) {
@@ -458,13 +458,13 @@ impl Pass<'_> {
 ///
 /// # Errors
 /// [`Error::Mesh`] with the first fault.
-pub(super) fn demand(input: &Manifold, mesh: &Mesh, found: &Validity) -> Result<()> {
+pub(super) fn demand(manifold: &Manifold, mesh: &Mesh, found: &Validity) -> Result<()> {
     let help = "ask for more vertices (`vertices`); please report this with the input";
     let fault = |what: &str, place: String| Err(Error::mesh(what, place, help));
     if let Some(found) = &found.first_fault {
         return fault(&found.what, found.place.clone());
     }
-    let whole = input.whole();
+    let whole = manifold.whole();
     if (found.euler, found.boundary_loops) != (whole.euler, whole.borders) {
         let what = format!(
             "the mesh has another topology than the surface: Euler number {} and {} borders instead of {} and {}",
@@ -472,7 +472,7 @@ pub(super) fn demand(input: &Manifold, mesh: &Mesh, found: &Validity) -> Result<
         );
         return fault(&what, "the mesh".into());
     }
-    if mesh.required_triangles.len() < input.required_triangles().len() {
+    if mesh.required_triangles.len() < manifold.required_triangles().len() {
         return fault("a required triangle is not in the mesh", "the mesh".into());
     }
     Ok(())

@@ -19,7 +19,7 @@ pub(crate) const ALL_VERTICES: usize = usize::MAX;
 /// A surface's feature curves with their metric lengths. Where the metric differs on the two sides of a crease, that counts in
 /// which it is longer.
 pub(crate) struct MeasuredCurves<'a> {
-    input: &'a Manifold,
+    manifold: &'a Manifold,
     curves: Vec<MeasuredCurve>,
 }
 
@@ -86,9 +86,9 @@ impl FeatureSeeds {
 
 impl<'a> MeasuredCurves<'a> {
     /// Measures the curves of a surface's seams.
-    pub(crate) fn new(input: &'a Manifold, metric: &dyn SurfaceMetric) -> Self {
-        let curves = input.features().curves.par_iter().map(|curve| measured(input, metric, curve)).collect();
-        Self { input, curves }
+    pub(crate) fn new(manifold: &'a Manifold, metric: &dyn SurfaceMetric) -> Self {
+        let curves = manifold.features().curves.par_iter().map(|curve| measured(manifold, metric, curve)).collect();
+        Self { manifold, curves }
     }
 
     /// How many vertices curves add to those that the areas of the patches ask for, in terms of the root of the factor on the metric:
@@ -102,7 +102,7 @@ impl<'a> MeasuredCurves<'a> {
     /// all vertices are seeds, of one with the label [`CUT`] its ends. `density` says how many times as many edges each curve shall have; 1 if it says nothing; with
     /// [`ALL_VERTICES`] all vertices are seeds.
     pub(crate) fn sampled(&self, spacing: f64, hausd: Option<f64>, density: &[usize]) -> FeatureSeeds {
-        let features = self.input.features();
+        let features = self.manifold.features();
         let mut found = FeatureSeeds::default();
         let mut at: BTreeMap<VertexId, u32> = BTreeMap::new();
         for &v in &features.stops {
@@ -152,8 +152,8 @@ impl<'a> MeasuredCurves<'a> {
     /// Of the curves with the same ends the shortest (Euclidean): those that bulge more are not to become one edge with it.
     fn shortest_between(&self) -> BTreeMap<[VertexId; 2], usize> {
         let mut shortest: BTreeMap<[VertexId; 2], (f64, usize)> = BTreeMap::new();
-        for (i, curve) in self.input.features().curves.iter().enumerate() {
-            let edges = curve.edges.iter().map(|edge| edge.positions(self.input.surface()));
+        for (i, curve) in self.manifold.features().curves.iter().enumerate() {
+            let edges = curve.edges.iter().map(|edge| edge.positions(self.manifold.surface()));
             let length = edges.map(|[a, b]| a.distance(b)).sum();
             let least = shortest.entry(in_order(curve.ends())).or_insert((length, i));
             *least = if length < least.0 { (length, i) } else { *least };
@@ -163,12 +163,12 @@ impl<'a> MeasuredCurves<'a> {
 
     /// Whether a curve ends inside a patch on both sides.
     fn is_slit(&self, curve: &Curve) -> bool {
-        !curve.is_border() && curve.ends().iter().all(|&v| self.input.seams().copies(v).len() == 1)
+        !curve.is_border() && curve.ends().iter().all(|&v| self.manifold.seams().copies(v).len() == 1)
     }
 
     /// The ends of a curve and its middle; or, where that is much nearer to the chord between the ends, the vertex farthest from it.
     fn at_bulge(&self, i: usize) -> Vec<f64> {
-        let curve = &self.input.features().curves[i];
+        let curve = &self.manifold.features().curves[i];
         let ends = [0.0, curve.edges.len() as f64];
         let bulge = |station: f64| self.stray(curve, ends, station);
         let middle = self.curves[i].arc.parameter(0.5);
@@ -194,7 +194,7 @@ impl<'a> MeasuredCurves<'a> {
     fn stray(&self, curve: &Curve, chord: [f64; 2], station: f64) -> f64 {
         let at = |station: f64| {
             let (edge, t) = on_edge(curve, station);
-            let [a, b] = edge.positions(self.input.surface());
+            let [a, b] = edge.positions(self.manifold.surface());
             a.lerp(b, t)
         };
         let ([a, b], p) = (chord.map(at), at(station));
@@ -206,21 +206,21 @@ impl<'a> MeasuredCurves<'a> {
         if t <= 0.0 || t >= 1.0 {
             return self.at_vertex(if t <= 0.0 { on.from } else { on.to });
         }
-        FeatureSeed { places: self.lifted(on.places(self.input.surface(), t)), stop: None }
+        FeatureSeed { places: self.lifted(on.places(self.manifold.surface(), t)), stop: None }
     }
 
     fn at_vertex(&self, v: VertexId) -> FeatureSeed {
-        let copies = self.input.seams().copies(v).iter();
-        let places = copies.filter_map(|&copy| self.input.place_of(copy)).collect();
+        let copies = self.manifold.seams().copies(v).iter();
+        let places = copies.filter_map(|&copy| self.manifold.place_of(copy)).collect();
         FeatureSeed { places: self.lifted(places), stop: None }
     }
 
     /// On an equation's surface, places that are on it.
     fn lifted(&self, places: Vec<Place>) -> Vec<Place> {
-        if self.input.equation().is_none() {
+        if self.manifold.equation().is_none() {
             return places;
         }
-        places.into_iter().map(|place| self.input.lift(&place, place.position).unwrap_or(place)).collect()
+        places.into_iter().map(|place| self.manifold.lift(&place, place.position).unwrap_or(place)).collect()
     }
 }
 
@@ -230,13 +230,13 @@ fn on_edge(curve: &Curve, station: f64) -> (&CurveEdge, f64) {
     (&curve.edges[edge], station - edge as f64)
 }
 
-fn measured(input: &Manifold, metric: &dyn SurfaceMetric, curve: &Curve) -> MeasuredCurve {
+fn measured(manifold: &Manifold, metric: &dyn SurfaceMetric, curve: &Curve) -> MeasuredCurve {
     let arc = |of: fn([f64; 2]) -> f64| {
         MetricArc::new(curve.edges.len(), |s, t| {
             let middle = 0.5 * (s + t);
             let first = middle.floor();
             let edge = &curve.edges[first as usize];
-            let [at_s, at_middle, at_t] = [s, middle, t].map(|at| of(speeds(input, metric, edge, at - first)));
+            let [at_s, at_middle, at_t] = [s, middle, t].map(|at| of(speeds(manifold, metric, edge, at - first)));
             (at_s + 4.0 * at_middle + at_t) / 6.0 * (t - s)
         })
     };
@@ -244,10 +244,10 @@ fn measured(input: &Manifold, metric: &dyn SurfaceMetric, curve: &Curve) -> Meas
 }
 
 /// The metric length of an edge by the metric at one of its points, on each side; 0 on a side that is none.
-fn speeds(input: &Manifold, metric: &dyn SurfaceMetric, edge: &CurveEdge, t: f64) -> [f64; 2] {
-    let [a, b] = edge.positions(input.surface());
+fn speeds(manifold: &Manifold, metric: &dyn SurfaceMetric, edge: &CurveEdge, t: f64) -> [f64; 2] {
+    let [a, b] = edge.positions(manifold.surface());
     let mut speeds = [0.0; 2];
-    for (speed, place) in speeds.iter_mut().zip(edge.places(input.surface(), t)) {
+    for (speed, place) in speeds.iter_mut().zip(edge.places(manifold.surface(), t)) {
         *speed = metric.at(&place).length(b - a);
     }
     speeds

@@ -130,8 +130,8 @@ fn uniform(map: Map, seeds: &[Point], canvas: &Canvas) -> Case {
 /// Seeds in any metric, as the program certifies them.
 fn varied(field: &dyn MetricField, seeds: &[Point], canvas: &Canvas) -> Case {
     let diagram = Diagram::new(canvas, field, seeds).unwrap();
-    let dual = recipe::dual(&diagram, field, Road::Both, &Silent);
-    let net = recipe::net(&diagram, field, &dual.exact);
+    let dual = recipe::dual(&diagram, Road::Both, &Silent);
+    let net = recipe::net(&diagram, &dual.exact);
     let certificate = Certificate::new(&diagram, &dual.exact, &net, Constants::Corrected);
     compared(&diagram, certificate, dual.exact)
 }
@@ -294,19 +294,19 @@ fn a_plane_in_space_is_certified_as_the_plane_is() {
     let seeds = lattice(Map([13.0 * 1.5_f64.sqrt(), 0.0, 13.0]), 0.02, &mut Random(5));
     let canvas = Canvas::intrinsic(square.planar(), &flat, 80 * seeds.len()).unwrap();
     let truth = varied(&flat, &seeds, &canvas).certificate;
-    let (input, lifted) = tilted();
+    let (manifold, lifted) = tilted();
     let plane = TangentPlane::new(Vector3::new(0.48, 0.6, 0.64));
     let metric = move |p: Point3| {
         let at = Point::default() + plane.flatten(p - lifted(Point::default()));
         plane.extend(flat.at(at), 1.0)
     };
-    let places: Vec<Place> = seeds.iter().map(|&p| input.closest(lifted(p)).unwrap()).collect();
+    let places: Vec<Place> = seeds.iter().map(|&p| manifold.closest(lifted(p)).unwrap()).collect();
     let certified = |(canvas, at): &(Canvas<Draped>, Vec<VertexId>)| {
         let diagram = SurfaceDiagram::on_surface(canvas, at, Method::March).unwrap();
-        let exact = recipe::surface_dual(&diagram, Road::Both, &Silent).exact;
-        Certificate::on_surface(&diagram, &exact, &recipe::surface_net(&diagram, &exact), Constants::Corrected)
+        let exact = recipe::dual(&diagram, Road::Both, &Silent).exact;
+        Certificate::on_surface(&diagram, &exact, &recipe::net(&diagram, &exact), Constants::Corrected)
     };
-    let found = certified(&Canvas::on_surface(Kind::Intrinsic, &input, &metric, 80 * seeds.len(), &places).unwrap());
+    let found = certified(&Canvas::on_surface(Kind::Intrinsic, &manifold, &metric, 80 * seeds.len(), &places).unwrap());
     let near = |a: f64, b: f64, share: f64| assert!((a / b - 1.0).abs() < share, "{a} {b}");
     near(found.psi - 1.0, truth.psi - 1.0, 1e-3);
     near(found.net.delta, truth.net.delta, 1e-3);
@@ -319,9 +319,9 @@ fn a_plane_in_space_is_certified_as_the_plane_is() {
         assert_eq!(of_plane.outcome, of_sheet.outcome, "{of_plane:#?} {of_sheet:#?}");
     }
     assert!(found.verdict("10.20").unwrap().not_measured.as_ref().unwrap().contains("border"));
-    let fine = recipe::certified_canvas_on(Kind::Intrinsic, &input, &metric, &places, Constants::Corrected, 1 << 30);
+    let fine = recipe::certified_canvas_on(Kind::Intrinsic, &manifold, &metric, &places, Constants::Corrected, 1 << 30);
     assert!(holds(&certified(&fine.unwrap()), "9.4"));
     let small =
-        recipe::certified_canvas_on(Kind::Intrinsic, &input, &metric, &places, Constants::Corrected, 10_000_000);
+        recipe::certified_canvas_on(Kind::Intrinsic, &manifold, &metric, &places, Constants::Corrected, 10_000_000);
     assert!(small.err().unwrap().to_string().contains("are estimated to need"));
 }

@@ -163,26 +163,26 @@ fn triangles_are_on_surfaces_of_equations_to_more_than_their_order_and_one() {
     let ball = |p: Point3| p.x.hypot(p.y).hypot(p.z) - 1.0;
     let truths: [(&str, &dyn Fn(Point3) -> f64); 2] = [("torus:1,0.4", &torus), ("sphere:1", &ball)];
     for (spec, distance) in truths {
-        let input = crate::manifold::surface::shape(spec, None).unwrap().unwrap();
+        let manifold = crate::manifold::surface::shape(spec, None).unwrap().unwrap();
         for order in [2, 3] {
             let away = [200, 800]
-                .map(|vertices| (farthest(&input, vertices, order, distance), 1.0 / (vertices as f64).sqrt()));
+                .map(|vertices| (farthest(&manifold, vertices, order, distance), 1.0 / (vertices as f64).sqrt()));
             assert!(order_of(away) > order as f64 + 1.1, "{spec} {order}: {away:?}");
         }
     }
 }
 
 /// How far the triangles of a mesh of a surface are from it at most.
-fn farthest(input: &Manifold, vertices: usize, order: usize, distance: &dyn Fn(Point3) -> f64) -> f64 {
+fn farthest(manifold: &Manifold, vertices: usize, order: usize, distance: &dyn Fn(Point3) -> f64) -> f64 {
     let metric = |_: Point3| Tensor3::IDENTITY;
-    let meshed = mesh_surface(input, &metric, None, &options(vertices, order, Boundary::Auto), &Silent).unwrap();
+    let meshed = mesh_surface(manifold, &metric, None, &options(vertices, order, Boundary::Auto), &Silent).unwrap();
     assert_eq!(meshed.notes, Vec::<String>::new());
     let all = (0..meshed.mesh.triangles.len()).flat_map(|t| {
         let points = points_in_space(&meshed.mesh, t);
         Rule::fine(&meshed.mesh).places.into_iter().map(move |place| place.image_in_space(&points))
     });
     let most = all.map(|p| distance(p).abs()).fold(0.0, f64::max);
-    let seen = surface_fidelity(&meshed.mesh, input).unwrap().curved.unwrap().hausdorff;
+    let seen = surface_fidelity(&meshed.mesh, manifold).unwrap().curved.unwrap().hausdorff;
     assert!((seen - most).abs() < 1e-12 + 1e-3 * most, "{seen} {most}");
     most
 }

@@ -95,7 +95,7 @@ fn protected_seeds_are_and_the_raw_nerve_is_their_dual() {
         let canvas =
             resolve(Canvas::intrinsic(domain.planar(), &unit, 6000).unwrap(), &unit, &seeds, 8).unwrap().canvas;
         let diagram = Diagram::new(&canvas, &unit, &seeds).unwrap();
-        let raw = recipe::dual(&diagram, &unit, crate::dual::Road::Both, &Silent).raw_nerve;
+        let raw = recipe::dual(&diagram, crate::dual::Road::Both, &Silent).raw_nerve;
         assert_eq!((raw.missing, raw.extra), (0, 0), "{raw:?}");
         let interior = meshed.net.unwrap().interior().count();
         assert_eq!(raw.triangles, interior);

@@ -49,7 +49,7 @@ fn sides([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
 
 fn both(domain: &Domain, field: &dyn MetricField, seeds: &[Point]) -> SeedDual {
     let canvas = Canvas::intrinsic(domain.planar(), field, size_for(seeds.len(), 60)).unwrap();
-    recipe::dual(&Diagram::new(&canvas, field, seeds).unwrap(), field, Road::Both, &Silent)
+    recipe::dual(&Diagram::new(&canvas, field, seeds).unwrap(), Road::Both, &Silent)
 }
 
 /// The dual of few seeds, cells many units wide, is the nerve on a canvas twice as fine, but where it says that it is not
@@ -110,7 +110,7 @@ fn many(name: &str, domain: &Domain, field: &dyn MetricField, seeds: &[Point]) {
     let nerve = counted(diagram.sharp_nerve().triangles.iter().map(|t| t.colours));
     let of_nerve: BTreeSet<[u32; 2]> = nerve.keys().flat_map(|&t| sides(t)).collect();
     for road in [Road::Geodesic, Road::Both] {
-        let found = recipe::dual(&diagram, field, road, &Silent);
+        let found = recipe::dual(&diagram, road, &Silent);
         let lengths = counted(found.triangles.iter().copied());
         let differ = missing(&lengths, &nerve).len();
         let listed: BTreeSet<[u32; 2]> = found

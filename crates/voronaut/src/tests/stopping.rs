@@ -64,8 +64,8 @@ fn polished_meshes() {
 
 #[test]
 fn surface_meshes() {
-    let input = Manifold::shape("torus:2,0.7", None).unwrap();
-    let metric = field(&Spec::parse("curvature").unwrap(), &input, Bounds::default()).unwrap();
+    let manifold = Manifold::shape("torus:2,0.7", None).unwrap();
+    let metric = field(&Spec::parse("curvature").unwrap(), &manifold, Bounds::default()).unwrap();
     let options = MeshOptions { vertices: Some(200), fit: true, ..MeshOptions::default() };
-    stops(20, |progress| recipe::mesh_surface(&input, metric.as_ref(), None, &options, progress).map(drop));
+    stops(20, |progress| recipe::mesh_surface(&manifold, metric.as_ref(), None, &options, progress).map(drop));
 }

@@ -6,20 +6,20 @@ use voronaut::manifold::surface::{FeatureOptions, RepairOptions, Surface, repair
 use voronaut::mesh::Mesh;
 use voronaut::metric::Bounds;
 use voronaut::progress::Silent;
-use voronaut::quality::{Meetings, surface_quality, validity_on};
+use voronaut::quality::{Meetings, metric_quality, validity_on};
 use voronaut::recipe::{MeshOptions, Meshed, mesh_surface};
 
-fn input(points: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Manifold {
+fn manifold(points: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Manifold {
     let mesh = Mesh { points, triangle_labels: vec![0; triangles.len()], triangles, ..Mesh::default() };
     Manifold::of(&mesh).unwrap()
 }
 
 /// Meshes by a metric; the mesh meets itself where the surface does at most.
-fn meshed(input: &Manifold, metric: &str, count: usize) -> Meshed {
-    let field = field(&Spec::parse(metric).unwrap(), input, Bounds::default()).unwrap();
+fn meshed(manifold: &Manifold, metric: &str, count: usize) -> Meshed {
+    let field = field(&Spec::parse(metric).unwrap(), manifold, Bounds::default()).unwrap();
     let options = MeshOptions { vertices: Some(count), ..MeshOptions::default() };
-    let meshed = mesh_surface(input, field.as_ref(), None, &options, &Silent).unwrap();
-    let found = validity_on(&meshed.mesh, &Meetings::of(input.whole_mesh()));
+    let meshed = mesh_surface(manifold, field.as_ref(), None, &options, &Silent).unwrap();
+    let found = validity_on(&meshed.mesh, &Meetings::of(manifold.whole_mesh()));
     assert!(found.valid, "{:?}", found.first_fault);
     meshed
 }
@@ -28,10 +28,10 @@ fn meshed(input: &Manifold, metric: &str, count: usize) -> Meshed {
 #[test]
 fn two_triangles_become_unit_triangles() {
     let points = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 1.0], [2.0, 1.0, 0.0]];
-    let input = input(points, vec![[0, 1, 2], [1, 3, 2]]);
-    let found = meshed(&input, "uniform", 1000);
-    let metric = field(&Spec::Uniform, &input, Bounds::default()).unwrap();
-    let quality = surface_quality(&found.mesh, &input, metric.as_ref()).unwrap().quality;
+    let manifold = manifold(points, vec![[0, 1, 2], [1, 3, 2]]);
+    let found = meshed(&manifold, "uniform", 1000);
+    let metric = field(&Spec::Uniform, &manifold, Bounds::default()).unwrap();
+    let quality = metric_quality(&found.mesh, (&manifold, metric.as_ref())).unwrap().quality;
     assert!(found.mesh.points.len() == 1000 && quality.mean > 0.95 && quality.min > 0.4, "{quality:?}");
 }
 
@@ -40,7 +40,7 @@ fn two_triangles_become_unit_triangles() {
 fn flat_surfaces_face_either_way() {
     let points = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
     for triangles in [vec![[0, 1, 2], [0, 2, 3]], vec![[0, 2, 1], [0, 3, 2]]] {
-        let found = meshed(&input(points.clone(), triangles), "uniform", 100);
+        let found = meshed(&manifold(points.clone(), triangles), "uniform", 100);
         assert_eq!(found.mesh.points.len(), 100);
     }
 }
@@ -61,7 +61,7 @@ fn a_thin_tip_has_a_metric() {
         let next = (k + 1) % n;
         triangles.extend([[k, next, n + k], [next, n + next, n + k], [n + k, n + next, 2 * n], [next, k, 2 * n + 1]]);
     }
-    let found = meshed(&input(points, triangles), "curvature", 400);
+    let found = meshed(&manifold(points, triangles), "curvature", 400);
     assert!(found.mesh.points.len().abs_diff(400) <= 4, "{:?}", found.notes);
 }
 
@@ -75,7 +75,7 @@ fn spikes_have_a_mesh() {
         let points = (0..(n + 1) * (n + 1)).map(|k| [at(k)[0], at(k)[1], height(k)]).collect();
         let cells = (0..n).flat_map(|i| (0..n).map(move |j| i * (n + 1) + j));
         let triangles = cells.flat_map(|a| [[a, a + n + 1, a + n + 2], [a, a + n + 2, a + 1]]).collect();
-        let found = meshed(&input(points, triangles), "uniform", 300);
+        let found = meshed(&manifold(points, triangles), "uniform", 300);
         assert!(found.notes.iter().any(|note| note.starts_with("made anew")), "{:?}", found.notes);
     }
 }
@@ -99,9 +99,9 @@ fn labelled_square(labels: u32) -> Manifold {
 #[test]
 fn labels_do_not_change_the_number_of_vertices() {
     let count = |labels: u32| {
-        let input = labelled_square(labels);
-        let field = field(&Spec::parse("formula:400;0;400;0;0;400").unwrap(), &input, Bounds::default()).unwrap();
-        mesh_surface(&input, field.as_ref(), None, &MeshOptions::default(), &Silent).unwrap().mesh.points.len()
+        let manifold = labelled_square(labels);
+        let field = field(&Spec::parse("formula:400;0;400;0;0;400").unwrap(), &manifold, Bounds::default()).unwrap();
+        mesh_surface(&manifold, field.as_ref(), None, &MeshOptions::default(), &Silent).unwrap().mesh.points.len()
     };
     let [one, many] = [1, 4].map(count);
     assert!(one.abs_diff(many) * 50 <= one, "{one} {many}");
@@ -133,8 +133,8 @@ fn cubes_that_share_an_edge_or_a_corner_are_meshed_once_repaired() {
         let mesh = Mesh { points, triangle_labels: vec![0; triangles.len()], triangles, ..Mesh::default() };
         assert!(repaired(&mesh, RepairOptions::default()).and_then(|(mesh, _)| Surface::new(&mesh)).is_err());
         let (mesh, _) = repaired(&mesh, RepairOptions { repair: true }).unwrap();
-        let input = Manifold::of(&mesh).unwrap().cut(&FeatureOptions::default()).unwrap();
-        assert_eq!(meshed(&input, "uniform", 300).mesh.points.len(), 300);
+        let manifold = Manifold::of(&mesh).unwrap().cut(&FeatureOptions::default()).unwrap();
+        assert_eq!(meshed(&manifold, "uniform", 300).mesh.points.len(), 300);
     }
 }
 
@@ -146,18 +146,18 @@ fn what_meets_itself_is_meshed_and_told() {
     let points =
         ball.points.iter().copied().chain(ball.points.iter().map(|p| [p[0] + 1.2, p[1] + 0.01, p[2]])).collect();
     let triangles = ball.triangles.iter().copied().chain(ball.triangles.iter().map(|t| t.map(|v| v + n))).collect();
-    let input = input(points, triangles);
-    let found = meshed(&input, "uniform", 500);
-    let excused = validity_on(&found.mesh, &Meetings::of(input.whole_mesh())).meetings;
+    let manifold = manifold(points, triangles);
+    let found = meshed(&manifold, "uniform", 500);
+    let excused = validity_on(&found.mesh, &Meetings::of(manifold.whole_mesh())).meetings;
     assert!(excused.count > 0 && excused.first.is_some(), "{excused:?}");
 }
 
 /// Sheets through one point, which triangles cannot keep apart.
 #[test]
 fn an_equation_whose_triangles_meet_is_refused_with_the_place() {
-    let input = Manifold::shape("implicit:(x^2+y^2-z^2)*z;-1,-1,-1,1,1,1", None).unwrap();
-    let field = field(&Spec::Uniform, &input, Bounds::default()).unwrap();
-    let error = mesh_surface(&input, field.as_ref(), None, &MeshOptions::default(), &Silent).unwrap_err();
+    let manifold = Manifold::shape("implicit:(x^2+y^2-z^2)*z;-1,-1,-1,1,1,1", None).unwrap();
+    let field = field(&Spec::Uniform, &manifold, Bounds::default()).unwrap();
+    let error = mesh_surface(&manifold, field.as_ref(), None, &MeshOptions::default(), &Silent).unwrap_err();
     assert!(error.to_string().contains("triangles of f = 0 meet"), "{error}");
 }
 
@@ -168,9 +168,9 @@ fn a_patch_between_two_creases_keeps_its_area() {
     let points = [[-3.0, 0.0, 0.0], [3.0, 0.0, 0.0], [0.0, 0.05, 1.0], [-6.0, 10.0, 0.0], [6.0, 10.0, 0.0]];
     let points = [&points[..], &[[-6.0, -10.0, 0.0], [6.0, -10.0, 0.0]]].concat();
     let triangles = vec![[0, 1, 2], [0, 2, 3], [2, 4, 3], [1, 4, 2], [0, 5, 1], [5, 6, 1]];
-    let input = input(points, triangles).cut(&FeatureOptions::default()).unwrap();
-    let found = meshed(&input, "uniform", 14).mesh;
-    let metric = field(&Spec::Uniform, &input, Bounds::default()).unwrap();
-    let quality = surface_quality(&found, &input, metric.as_ref()).unwrap().quality;
+    let manifold = manifold(points, triangles).cut(&FeatureOptions::default()).unwrap();
+    let found = meshed(&manifold, "uniform", 14).mesh;
+    let metric = field(&Spec::Uniform, &manifold, Bounds::default()).unwrap();
+    let quality = metric_quality(&found, (&manifold, metric.as_ref())).unwrap().quality;
     assert!(quality.min > 0.1 && found.points.iter().any(|p| p[2] > 0.5), "{quality:?}");
 }

@@ -9,14 +9,14 @@ use voronaut::manifold::{Manifold, Place};
 use voronaut::mesh::Mesh;
 use voronaut::metric::Bounds;
 use voronaut::progress::Silent;
-use voronaut::quality::{surface_fidelity, surface_quality, validity};
+use voronaut::quality::{metric_quality, surface_fidelity, validity};
 use voronaut::recipe::{MeshOptions, Meshed, Seeding, mesh_surface};
 use voronaut_io::Given;
 
 /// A shape or a file.
 fn read(spec: &str) -> Manifold {
     match Given::read(spec, RepairOptions::default()).unwrap().0 {
-        Given::Surface(input) => input,
+        Given::Surface(manifold) => manifold,
         Given::Plane(_) => panic!("{spec} is a surface"),
     }
 }
@@ -33,10 +33,10 @@ impl SurfaceMetric for Scaled<'_> {
     }
 }
 
-fn meshed(input: &Manifold, metric: &str, options: &MeshOptions) -> (Meshed, f64, f64) {
-    let metric = field(&Spec::parse(metric).unwrap(), input, Bounds::default()).unwrap();
-    let meshed = mesh_surface(input, metric.as_ref(), None, options, &Silent).unwrap();
-    let figures = surface_quality(&meshed.mesh, input, &Scaled(metric.as_ref(), meshed.metric_scale)).unwrap();
+fn meshed(manifold: &Manifold, metric: &str, options: &MeshOptions) -> (Meshed, f64, f64) {
+    let metric = field(&Spec::parse(metric).unwrap(), manifold, Bounds::default()).unwrap();
+    let meshed = mesh_surface(manifold, metric.as_ref(), None, options, &Silent).unwrap();
+    let figures = metric_quality(&meshed.mesh, (manifold, &Scaled(metric.as_ref(), meshed.metric_scale))).unwrap();
     (meshed, figures.quality.mean, figures.quality.min)
 }
 
@@ -53,18 +53,18 @@ fn meshes_are_valid_and_of_the_surface_s_topology() {
         ("implicit:z-0.2*sin(3*x);-1,-1,-1,1,1,1", "uniform", 300, [0.9, 0.2]),
         ("implicit:(x^2+y^2+z^2-1)*((x-3)^2+y^2+z^2-0.25);-2,-2,-2,4,2,2", "uniform", 300, [0.95, 0.5]),
     ] {
-        let input = read(spec);
+        let manifold = read(spec);
         let (meshed, mean, min) =
-            meshed(&input, metric, &MeshOptions { vertices: Some(count), ..MeshOptions::default() });
+            meshed(&manifold, metric, &MeshOptions { vertices: Some(count), ..MeshOptions::default() });
         let mesh = &meshed.mesh;
         let found = validity(mesh);
         println!("{spec} {metric}: {} vertices, quality {mean:.3} / {min:.3}", mesh.points.len());
         assert!(found.valid, "{spec}: {found:?}");
-        assert_eq!(found.euler, input.surface().euler_characteristic(), "{spec}");
-        assert_eq!(found.boundary_loops, validity(&input.surface().to_mesh()).boundary_loops, "{spec}");
+        assert_eq!(found.euler, manifold.surface().euler_characteristic(), "{spec}");
+        assert_eq!(found.boundary_loops, validity(&manifold.surface().to_mesh()).boundary_loops, "{spec}");
         assert!(mesh.points.len().abs_diff(count) * 100 <= count, "{spec}: {}", mesh.points.len());
-        let fidelity = surface_fidelity(mesh, &input).unwrap();
-        assert!(fidelity.vertex_to_surface.value < 1e-9 * input.diagonal(), "{spec}: {fidelity:?}");
+        let fidelity = surface_fidelity(mesh, &manifold).unwrap();
+        assert!(fidelity.vertex_to_surface.value < 1e-9 * manifold.diagonal(), "{spec}: {fidelity:?}");
         assert!(fidelity.folded == 0 && !fidelity.reversed, "{spec}: {fidelity:?}");
         assert!(mean > least[0] && min > least[1], "{spec}: {mean} {min}");
     }
@@ -72,14 +72,14 @@ fn meshes_are_valid_and_of_the_surface_s_topology() {
 
 #[test]
 fn any_number_of_threads_and_any_canvas_make_a_mesh() {
-    let input = read("torus:2,0.7");
+    let manifold = read("torus:2,0.7");
     for canvas in Kind::ALL {
         let (seeding, dual) = (Seeding::Farthest, Road::Canvas);
         let few = MeshOptions { lloyd: 2, canvas_size: 20, ..MeshOptions::default() };
         let options = MeshOptions { vertices: Some(150), canvas, seeding, dual, ..few };
         let of_threads = [1, 3].map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| meshed(&input, "curvature", &options).0.mesh)
+            pool.install(|| meshed(&manifold, "curvature", &options).0.mesh)
         });
         assert_eq!(of_threads[0], of_threads[1], "{canvas}");
         assert!(validity(&of_threads[0]).valid);
@@ -87,7 +87,7 @@ fn any_number_of_threads_and_any_canvas_make_a_mesh() {
     let of_threads = [1, 3].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let options = MeshOptions { vertices: Some(300), ..MeshOptions::default() };
-        pool.install(|| meshed(&input, "curvature", &options).0)
+        pool.install(|| meshed(&manifold, "curvature", &options).0)
     });
     assert_eq!(of_threads[0].mesh, of_threads[1].mesh);
     assert!(of_threads[0].canvas.is_none());
@@ -95,11 +95,11 @@ fn any_number_of_threads_and_any_canvas_make_a_mesh() {
 
 #[test]
 fn fitting_brings_spot_nearer_and_keeps_shapes() {
-    let input = read(&data("spot.obj"));
+    let manifold = read(&data("spot.obj"));
     let of = |fit: bool| {
         let options = MeshOptions { vertices: Some(1020), fit, ..MeshOptions::default() };
-        let (meshed, mean, min) = meshed(&input, "curvature", &options);
-        let fidelity = surface_fidelity(&meshed.mesh, &input).unwrap();
+        let (meshed, mean, min) = meshed(&manifold, "curvature", &options);
+        let fidelity = surface_fidelity(&meshed.mesh, &manifold).unwrap();
         println!("fit {fit}: quality {mean:.3} / {min:.3}, {:?}", fidelity.both);
         assert!(validity(&meshed.mesh).valid && mean >= 0.9 && min >= 0.2, "{mean} {min}");
         fidelity.both
@@ -111,13 +111,13 @@ fn fitting_brings_spot_nearer_and_keeps_shapes() {
 
 #[test]
 fn a_distance_asks_for_more_vertices_unless_their_number_is_given() {
-    let input = read("sphere:1");
+    let manifold = read("sphere:1");
     let options = MeshOptions { complexity: Some(60.0), hausd: Some(5e-3), ..MeshOptions::default() };
-    let (found, ..) = meshed(&input, "uniform", &options);
+    let (found, ..) = meshed(&manifold, "uniform", &options);
     let distance = found.fidelity.unwrap().both.hausdorff;
     assert!(distance <= 5e-3 && found.mesh.points.len() > 200 && found.notes.is_empty(), "{distance}");
     let few = MeshOptions { vertices: Some(80), hausd: Some(5e-3), ..MeshOptions::default() };
-    let (found, ..) = meshed(&input, "uniform", &few);
+    let (found, ..) = meshed(&manifold, "uniform", &few);
     assert!(found.mesh.points.len() == 80 && found.notes[0].contains("`hausd` asks for"), "{:?}", found.notes);
 }
 
@@ -134,9 +134,9 @@ fn pointed_cones_have_no_needles() {
         let wall = (0..sides).map(|i| [0, 2 + i, next(i)]);
         let base = (0..sides).filter(|_| is_closed).map(|i| [1, next(i), 2 + i]);
         let cone = Mesh { points: points.collect(), triangles: wall.chain(base).collect(), ..Mesh::default() };
-        let input = Manifold::of(&cone).unwrap().cut(&FeatureOptions::default()).unwrap();
+        let manifold = Manifold::of(&cone).unwrap().cut(&FeatureOptions::default()).unwrap();
         let options = MeshOptions { vertices: Some(count), ..MeshOptions::default() };
-        let (meshed, mean, min) = meshed(&input, metric, &options);
+        let (meshed, mean, min) = meshed(&manifold, metric, &options);
         assert!(meshed.mesh.points.contains(&[0.0, 0.0, 10.0]), "{sides} sides");
         assert!(meshed.mesh.points.len() == count && min > 0.1 && mean > 0.9, "{sides} sides: {min} {mean}");
     }

@@ -29,13 +29,13 @@ pub(super) struct Spot {
 
 impl<'a, 'b> OnSurface<'a, 'b> {
     pub(super) fn new(dual: &'a mut SurfaceDual<'b>, function: &'a Expression) -> Self {
-        let seen = |place: &Place| Seen { tensor: dual.metric().at(place), normal: dual.input().normal(place) };
+        let seen = |place: &Place| Seen { tensor: dual.metric().at(place), normal: dual.manifold().normal(place) };
         let seen = dual.places().iter().map(seen).collect();
         Self { dual, function, seen }
     }
 
     fn spot(&self, place: &Place, by: Vector) -> Spot {
-        Spot { position: place.position, normal: self.dual.input().normal(place), by }
+        Spot { position: place.position, normal: self.dual.manifold().normal(place), by }
     }
 
     fn at(&self, p: Point3) -> f64 {

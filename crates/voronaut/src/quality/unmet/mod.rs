@@ -94,8 +94,7 @@ pub struct Unmet {
     pub needles: Vec<Needle>,
     /// The metric lengths of all edges of the mesh, in the order of [`Edges`].
     pub lengths: Vec<f64>,
-    /// What [`metric_quality`](super::metric_quality()) finds, or [`surface_quality`](super::surface_quality()) of a surface; `None` where
-    /// there are no triangles.
+    /// What [`metric_quality`](super::metric_quality()) finds; `None` where there are no triangles.
     pub quality: Option<MetricQuality>,
 }
 
@@ -189,14 +188,8 @@ impl Unmet {
     }
 }
 
-/// Finds the edges of a planar mesh that are not of unit length in a metric, and why, in parallel; the same bits for any number
-/// of threads. `see` is shown the quality and the smallest angle (degrees) of each triangle, in order. Corners of the mesh's borders and
-/// labelled edges are those in its lists, and wherever these edges end, fork, turn, or change their label. Sides of curved triangles are measured along
-/// their curves; where a metric turns too fast for straight edges, and they are not of unit length either, that is the cause.
-///
-/// # Errors
-/// As [`metric_quality`](super::metric_quality), but that a mesh without triangles has no such edges.
-pub fn unmet(mesh: &Mesh, metric: &dyn MetricField, see: impl FnMut([f64; 2])) -> Result<Unmet> {
+/// Of a planar mesh.
+pub(super) fn in_plane(mesh: &Mesh, metric: &dyn MetricField, see: impl FnMut([f64; 2])) -> Result<Unmet> {
     demand_planar(mesh)?;
     let around = |ends: [u32; 2]| {
         let [a, b] = ends.map(|v| mesh.point(v));
@@ -216,12 +209,8 @@ pub fn unmet(mesh: &Mesh, metric: &dyn MetricField, see: impl FnMut([f64; 2])) -
     find(mesh, STRAIGHT, length, shape, around, Position::in_plane, see)
 }
 
-/// The same of the mesh of a surface in a metric on it, see [`surface_quality`](super::surface_quality()). Features turn in a
-/// corner where they turn by more than [`FeatureOptions::DEFAULT_ANGLE`], for curves of a surface are curved.
-///
-/// # Errors
-/// As [`surface_quality`](super::surface_quality()), but that a mesh without triangles has no such edges.
-pub fn surface_unmet(
+/// Of the mesh of a surface.
+pub(super) fn on_surface(
     mesh: &Mesh,
     surface: &Manifold,
     metric: &dyn SurfaceMetric,

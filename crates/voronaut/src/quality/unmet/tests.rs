@@ -1,20 +1,16 @@
 //! Meshes of which it is known why their edges are not of unit length.
 
-use super::super::metric_quality::metric_quality;
-use super::super::surface_quality::surface_quality;
+use super::super::metric_quality;
 use super::super::test_meshes::{grid, lattice, mesh};
 use super::*;
 use crate::geometry::{Tensor, Tensor3};
+use crate::manifold::Riemannian;
 use crate::manifold::surface::metric::Constant;
 
 const UNIT: fn(Point) -> Tensor = |_| Tensor::IDENTITY;
 
-fn unmet(mesh: &Mesh, metric: &dyn MetricField) -> Result<Unmet> {
-    super::unmet(mesh, metric, |_| ())
-}
-
-fn surface_unmet(mesh: &Mesh, surface: &Manifold, metric: &dyn SurfaceMetric) -> Result<Unmet> {
-    super::surface_unmet(mesh, surface, metric, |_| ())
+fn unmet<'a>(mesh: &Mesh, on: impl Into<Riemannian<'a>>) -> Result<Unmet> {
+    super::super::unmet(mesh, on, |_| ())
 }
 
 /// How many edges there are of each cause, in order.
@@ -192,7 +188,7 @@ fn surfaces_have_the_same_causes() {
     let flat = lattice(12);
     let surface = Manifold::of(&flat).unwrap();
     let fine = Constant(Tensor3::isotropic(0.5));
-    let found = surface_unmet(&flat, &surface, &fine).unwrap();
+    let found = unmet(&flat, (&surface, &fine)).unwrap();
     assert_eq!(counts(&found), [0, found.lengths.len(), 0, 0]);
     assert_eq!(found.edges[0].at.coordinates().len(), 3);
     let (wild, planar) = waves(4.0);
@@ -201,7 +197,7 @@ fn surfaces_have_the_same_causes() {
         Tensor3::from_disk([m.xx, m.xy, m.yy, 0.0, 0.0, 1.0])
     };
     let truth = unmet(&wild, &planar).unwrap();
-    let found = surface_unmet(&wild, &Manifold::of(&wild).unwrap(), &metric).unwrap();
+    let found = unmet(&wild, (&Manifold::of(&wild).unwrap(), &metric)).unwrap();
     assert_eq!(found.edges.len(), truth.edges.len());
     // Off the sheet its metric is that of its rim.
     let differ = found.edges.iter().zip(&truth.edges).filter(|(a, b)| a.cause != b.cause).count();
@@ -213,8 +209,8 @@ fn quality_is_what_is_measured_alone() {
     let (wild, planar) = waves(4.0);
     assert_eq!(unmet(&wild, &planar).unwrap().quality, Some(metric_quality(&wild, &planar).unwrap()));
     let (surface, metric) = (Manifold::of(&wild).unwrap(), Constant(Tensor3::IDENTITY));
-    let alone = surface_quality(&wild, &surface, &metric).unwrap();
-    assert_eq!(surface_unmet(&wild, &surface, &metric).unwrap().quality, Some(alone));
+    let alone = metric_quality(&wild, (&surface, &metric)).unwrap();
+    assert_eq!(unmet(&wild, (&surface, &metric)).unwrap().quality, Some(alone));
     assert_eq!(unmet(&Mesh::default(), &UNIT).unwrap().quality, None);
 }
 

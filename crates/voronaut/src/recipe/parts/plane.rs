@@ -44,8 +44,8 @@ pub fn mesh_part(
 /// hands them over in the order of its parts: by [`mesh_part`], wherever that may be. The number of vertices is met exactly.
 ///
 /// # Errors
-/// As of [`mesh_for`], and of `make`. [`Error::Unsupported`] of options that need the whole domain: periodic pairs, the net, star sets,
-/// seeding other than by sizes. [`Error::Limit`] where parts would have fewer than 1,000 vertices.
+/// As of [`mesh_for`], and of `make`. [`Error::Unsupported`](crate::Error::Unsupported) of options that need the whole domain: periodic pairs, the net, star sets,
+/// seeding other than by sizes. [`Error::Limit`](crate::Error::Limit) where parts would have fewer than 1,000 vertices.
 pub fn mesh_in_parts(
     domain: &Domain,
     field: &dyn MetricField,

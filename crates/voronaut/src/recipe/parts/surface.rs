@@ -33,7 +33,7 @@ const AT_VERTEX: f64 = 1e-3;
 /// A surface, cut along its features, with its metric.
 #[derive(Clone, Copy)]
 struct OnSurface<'a> {
-    input: &'a Manifold,
+    manifold: &'a Manifold,
     metric: &'a dyn SurfaceMetric,
 }
 
@@ -61,14 +61,14 @@ pub fn mesh_surface_part(
 /// # Errors
 /// As of [`mesh_in_parts`](super::mesh_in_parts); [`Error::Unsupported`] of vertices off the surface (`fit`) and of distances to it (`hausd`), too.
 pub fn mesh_surface_in_parts(
-    input: &Manifold,
+    manifold: &Manifold,
     metric: &dyn SurfaceMetric,
     parts: Option<usize>,
     options: &MeshOptions,
     make: Make,
     progress: &dyn Progress,
 ) -> Result<Meshed> {
-    in_parts(&OnSurface { input, metric }, parts, options, make, progress)
+    in_parts(&OnSurface { manifold, metric }, parts, options, make, progress)
 }
 
 /// The metric of a surface as one of a part of it.
@@ -105,8 +105,8 @@ impl Divisible for OnSurface<'_> {
         }
         // The limit is that of each part.
         let options = MeshOptions { memory_limit: u64::MAX, ..options.clone() };
-        let (meetings, watch) = (Meetings::of(self.input.whole_mesh()), Stopwatch::new(progress));
-        let setting = Setting::new(self.input, self.metric, None, &options, &meetings, &watch)?;
+        let (meetings, watch) = (Meetings::of(self.manifold.whole_mesh()), Stopwatch::new(progress));
+        let setting = Setting::new(self.manifold, self.metric, None, &options, &meetings, &watch)?;
         let SurfacePlan { count: vertices, scale, complexity } = setting.plan(None)?;
         let parts = number_of_parts(vertices, parts)?;
         let mut base = Base::new(*self)?;
@@ -132,8 +132,8 @@ impl Divisible for OnSurface<'_> {
     }
 
     fn check(&self, mesh: &Mesh) -> Result<Validity> {
-        let found = validity_on(mesh, &Meetings::of(self.input.whole_mesh()));
-        demand(self.input, mesh, &found)?;
+        let found = validity_on(mesh, &Meetings::of(self.manifold.whole_mesh()));
+        demand(self.manifold, mesh, &found)?;
         Ok(found)
     }
 
@@ -147,7 +147,7 @@ impl Divisible for OnSurface<'_> {
             }
         }
         let tensor = |v: u32| {
-            let place = self.input.closest_facing(mesh.position(v), normal[v as usize])?;
+            let place = self.manifold.closest_facing(mesh.position(v), normal[v as usize])?;
             Some(self.metric.at(&place))
         };
         let vertices = (0..mesh.points.len() as u32).into_par_iter().with_min_len(64);
@@ -181,7 +181,7 @@ struct Side {
 
 impl<'a> Base<'a> {
     fn new(on: OnSurface<'a>) -> Result<Self> {
-        let whole = with_features(on.input);
+        let whole = with_features(on.manifold);
         whole.edge_labels.iter().try_for_each(|&label| refuse_label(label))?;
         let surface = Manifold::of(&whole)?;
         let mut topology = surface.topology().clone();
@@ -189,7 +189,7 @@ impl<'a> Base<'a> {
         for &f in &faces {
             topology.set_region(f, f.0.cast_signed());
         }
-        let homes: Vec<FaceId> = on.input.topology().faces().collect();
+        let homes: Vec<FaceId> = on.manifold.topology().faces().collect();
         let marks = (0..whole.edges.len() as u32)
             .map(|i| surface.surface().mark(crate::triangulation::Constraint(i)))
             .collect();
@@ -212,7 +212,7 @@ impl<'a> Base<'a> {
 
     /// The metric at a point of a triangle.
     fn tensor(&self, f: FaceId, p: Point3) -> Tensor3 {
-        self.on.metric.at(&self.on.input.closest_on(self.side(f).home, p))
+        self.on.metric.at(&self.on.manifold.closest_on(self.side(f).home, p))
     }
 
     /// The longest edges are halved, so many in all; those that are required stay whole.
@@ -233,11 +233,11 @@ impl<'a> Base<'a> {
             }
             let middle = self.position(a).lerp(self.position(b), 0.5);
             let on = |h: HalfEdge| {
-                let place = self.on.input.closest_on(self.side(h.face()).home, middle);
-                if self.on.input.equation().is_none() {
+                let place = self.on.manifold.closest_on(self.side(h.face()).home, middle);
+                if self.on.manifold.equation().is_none() {
                     Some(middle)
                 } else {
-                    Some(self.on.input.lift(&place, middle)?.position)
+                    Some(self.on.manifold.lift(&place, middle)?.position)
                 }
             };
             let Some(p) = on(h).filter(|&p| p != self.position(a) && p != self.position(b)) else { continue };
@@ -381,7 +381,7 @@ impl<'a> Base<'a> {
     fn kept(&self) -> Kept {
         let places = |list: &[VertexId]| list.iter().map(|&v| position_of(self.position(v).to_array())).collect();
         let required: Vec<VertexId> = self.whole.required_points.iter().map(|&v| VertexId(v)).collect();
-        Kept { corners: places(&self.on.input.features().corners), points: places(&required), ..Kept::default() }
+        Kept { corners: places(&self.on.manifold.features().corners), points: places(&required), ..Kept::default() }
     }
 
     /// The jobs of the parts.
@@ -413,7 +413,7 @@ impl<'a> Base<'a> {
 
     /// As a mesh with features; stations are corners.
     fn mesh(&self, stations: &BTreeSet<VertexId>) -> Mesh {
-        let homes = self.on.input.topology();
+        let homes = self.on.manifold.topology();
         let fixed: Vec<(HalfEdge, Mark)> = self.topology.edges().filter_map(|h| Some((h, self.mark(h)?))).collect();
         let marked = |is: fn(&Mark) -> bool| (0..).zip(&fixed).filter(|(_, (_, m))| is(m)).map(|(i, _)| i).collect();
         let mut point_labels = self.whole.point_labels.clone();
@@ -436,9 +436,9 @@ impl<'a> Base<'a> {
 }
 
 /// The triangles of a surface before it was cut, with its features as listed edges and what has to be kept as corners.
-fn with_features(input: &Manifold) -> Mesh {
-    let mut mesh = input.whole_mesh();
-    let features = input.features();
+fn with_features(manifold: &Manifold) -> Mesh {
+    let mut mesh = manifold.whole_mesh();
+    let features = manifold.features();
     for curve in &features.curves {
         for edge in &curve.edges {
             let i = mesh.edges.len() as u32;
@@ -449,9 +449,9 @@ fn with_features(input: &Manifold) -> Mesh {
         }
     }
     mesh.corners = features.stops.iter().map(|v| v.0).collect();
-    mesh.required_points = input.required_points().iter().map(|v| input.seams().original(*v).0).collect();
+    mesh.required_points = manifold.required_points().iter().map(|v| manifold.seams().original(*v).0).collect();
     mesh.required_points = distinct(mesh.required_points);
-    let rows: BTreeMap<FaceId, u32> = input.topology().faces().zip(0..).collect();
-    mesh.required_triangles = input.required_triangles().iter().filter_map(|f| rows.get(f).copied()).collect();
+    let rows: BTreeMap<FaceId, u32> = manifold.topology().faces().zip(0..).collect();
+    mesh.required_triangles = manifold.required_triangles().iter().filter_map(|f| rows.get(f).copied()).collect();
     mesh
 }

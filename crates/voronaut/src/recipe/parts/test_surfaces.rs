@@ -14,7 +14,7 @@ fn options(vertices: usize) -> MeshOptions {
 
 /// The mesh in parts, and how many parts each round had.
 fn made(
-    input: &Manifold,
+    manifold: &Manifold,
     metric: &dyn SurfaceMetric,
     parts: usize,
     options: &MeshOptions,
@@ -22,10 +22,10 @@ fn made(
     let mut rounds = Vec::new();
     let mut make = |_: &'static str, parts: &[Part], take: &mut dyn FnMut(Mesh)| {
         rounds.push(parts.len());
-        let mesh = |part| mesh_surface_part(part, input, metric, None, options, &Silent);
+        let mesh = |part| mesh_surface_part(part, manifold, metric, None, options, &Silent);
         parts.iter().try_for_each(|part| mesh(part).map(&mut *take))
     };
-    let meshed = mesh_surface_in_parts(input, metric, Some(parts), options, &mut make, &Silent)?;
+    let meshed = mesh_surface_in_parts(manifold, metric, Some(parts), options, &mut make, &Silent)?;
     Ok((meshed, rounds))
 }
 
@@ -45,14 +45,14 @@ fn closed_surfaces_come_together_again() {
     let turning = |p: Point3| Tensor3::IDENTITY * (1.0 + p.z * p.z);
     for surface in [sphere(1.0, 0.15).unwrap(), torus(2.0, 0.7, 0.3).unwrap()] {
         let euler = surface.euler_characteristic();
-        let input = Manifold::new(surface, None).cut(&FeatureOptions::default()).unwrap();
+        let manifold = Manifold::new(surface, None).cut(&FeatureOptions::default()).unwrap();
         for parts in [2, 3] {
-            let (meshed, rounds) = made(&input, &turning, parts, &options(3600)).unwrap();
-            let found = validity_on(&meshed.mesh, &Meetings::of(input.whole_mesh()));
+            let (meshed, rounds) = made(&manifold, &turning, parts, &options(3600)).unwrap();
+            let found = validity_on(&meshed.mesh, &Meetings::of(manifold.whole_mesh()));
             assert!(found.valid && (found.euler, found.boundary_loops) == (euler, 0), "{found:?}");
             assert_eq!((meshed.mesh.points.len(), rounds[0]), (3600, parts), "{:?}", meshed.notes);
             assert!(meshed.mesh.edges.is_empty() && meshed.mesh.corners.is_empty(), "nothing of cuts is left");
-            let one = mesh_surface(&input, &turning, None, &options(3600), &Silent).unwrap();
+            let one = mesh_surface(&manifold, &turning, None, &options(3600), &Silent).unwrap();
             let share = |of: &Meshed| unit_share(&of.mesh, &|p| turning(p) * of.metric_scale);
             assert!(share(&meshed) > share(&one) - 0.01, "{} for {} in one piece", share(&meshed), share(&one));
         }
@@ -68,12 +68,12 @@ fn features_of_a_cube_stay() {
     let triangle_labels = (0..12).map(|t| t / 2 + 1).collect();
     let edges = vec![[0, 1]];
     let cube = Mesh { points, triangles, triangle_labels, edges, edge_labels: vec![5], ..Mesh::default() };
-    let input = Manifold::of(&cube).unwrap().cut(&FeatureOptions::default()).unwrap();
+    let manifold = Manifold::of(&cube).unwrap().cut(&FeatureOptions::default()).unwrap();
     let metric = Constant(Tensor3::IDENTITY);
-    let (meshed, _) = made(&input, &metric, 2, &options(2400)).unwrap();
+    let (meshed, _) = made(&manifold, &metric, 2, &options(2400)).unwrap();
     let mesh = &meshed.mesh;
-    assert!(validity_on(mesh, &Meetings::of(input.whole_mesh())).valid);
-    let one = mesh_surface(&input, &metric, None, &options(2400), &Silent).unwrap().mesh;
+    assert!(validity_on(mesh, &Meetings::of(manifold.whole_mesh())).valid);
+    let one = mesh_surface(&manifold, &metric, None, &options(2400), &Silent).unwrap().mesh;
     let length = |mesh: &Mesh, label: i32| -> f64 {
         let of = mesh.edges.iter().zip(&mesh.edge_labels).filter(|(_, it)| **it == label);
         of.map(|(&[a, b], _)| mesh.position(a).distance(mesh.position(b))).sum()
@@ -91,9 +91,9 @@ fn features_of_a_cube_stay() {
 
 #[test]
 fn what_is_of_the_whole_is_refused_by_name() {
-    let input = Manifold::new(sphere(1.0, 0.3).unwrap(), None);
+    let manifold = Manifold::new(sphere(1.0, 0.3).unwrap(), None);
     let message =
-        |options: &MeshOptions| made(&input, &Constant(Tensor3::IDENTITY), 2, options).unwrap_err().to_string();
+        |options: &MeshOptions| made(&manifold, &Constant(Tensor3::IDENTITY), 2, options).unwrap_err().to_string();
     let of = options(3000);
     for changed in [MeshOptions { fit: true, ..of.clone() }, MeshOptions { hausd: Some(0.1), ..of.clone() }] {
         assert!(message(&changed).contains("distances to the surface of a mesh in parts"), "{}", message(&changed));

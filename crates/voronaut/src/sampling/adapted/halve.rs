@@ -25,9 +25,9 @@ pub(crate) struct Halving<'a> {
 }
 
 /// The triangulation with vertices in the middles of edges that are too long, and at all places that are given.
-pub(crate) fn halved(input: &Manifold, metric: &dyn SurfaceMetric, halving: &Halving) -> Adapted {
+pub(crate) fn halved(manifold: &Manifold, metric: &dyn SurfaceMetric, halving: &Halving) -> Adapted {
     let Halving { places, topology, given, are_there, factor, count } = *halving;
-    let mut work = Work::of(input, metric, factor, topology.clone(), places.to_vec());
+    let mut work = Work::of(manifold, metric, factor, topology.clone(), places.to_vec());
     let there = (0..).zip(are_there).filter(|(_, is_there)| **is_there).map(|(i, _)| i);
     for (vertex, i) in work.vertices.iter_mut().zip(there) {
         vertex.given = Some(i);
@@ -72,7 +72,7 @@ impl Work<'_> {
 
     /// Makes all given places vertices: each is on the edge that goes on from the last one before it on its border.
     fn cut_border(&mut self, given: &[Place], are_there: &[bool]) {
-        let stations = Stations::new(self.input);
+        let stations = Stations::new(self.manifold);
         let mut order: Vec<(usize, f64, usize)> =
             (0..).zip(given).filter_map(|(i, place)| stations.of(place).map(|(curve, at)| (curve, at, i))).collect();
         order.sort_by(|x, y| x.0.cmp(&y.0).then(x.1.total_cmp(&y.1)).then(x.2.cmp(&y.2)));
@@ -139,10 +139,10 @@ mod tests {
     /// On a cube that is cut along its edges, every other place on these is given at first.
     #[test]
     fn finer_triangulations_have_all_places_and_next_to_all_edges_halved() {
-        let input = Manifold::of(&cube(6, 0.0)).unwrap().cut(&FeatureOptions::default()).unwrap();
-        let t = input.topology();
+        let manifold = Manifold::of(&cube(6, 0.0)).unwrap().cut(&FeatureOptions::default()).unwrap();
+        let t = manifold.topology();
         let given: Vec<Place> =
-            t.vertices().filter(|&v| t.is_border_vertex(v)).filter_map(|v| input.place_of(v)).collect();
+            t.vertices().filter(|&v| t.is_border_vertex(v)).filter_map(|v| manifold.place_of(v)).collect();
         // Corners and every other one between them are there already.
         let steps = |place: &Place| place.position.to_array().map(|x| (6.0 * x).round() as i64);
         let are_there: Vec<bool> = given.iter().map(|place| steps(place).iter().all(|step| step % 2 == 0)).collect();
@@ -151,11 +151,11 @@ mod tests {
         assert!(2 * first.len() == given.len(), "{} {}", first.len(), given.len());
         let metric = Constant(Tensor3::IDENTITY * 9.0);
         let wanted = Wanted { given: &first, factor: 1.0, count: 6 * 16, held: Holding::Near(&[]) };
-        let coarse = adapted(&input, &metric, &wanted).unwrap();
+        let coarse = adapted(&manifold, &metric, &wanted).unwrap();
         assert!(coarse.stuck.is_empty());
         let (places, topology) = (&coarse.places, &coarse.topology);
         let halving = Halving { places, topology, given: &given, are_there: &are_there, factor: 4.0, count: 6 * 49 };
-        let fine = halved(&input, &metric, &halving);
+        let fine = halved(&manifold, &metric, &halving);
         fine.topology.check().unwrap();
         assert!(fine.stuck.is_empty() && fine.staying == given.len());
         assert_eq!(fine.places.len(), 6 * 49);

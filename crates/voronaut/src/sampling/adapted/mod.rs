@@ -79,15 +79,15 @@ pub(crate) struct Adapted {
 }
 
 /// Adapts the triangles of a surface. `None` where two of the given places are one vertex.
-pub(crate) fn adapted(input: &Manifold, metric: &dyn SurfaceMetric, wanted: &Wanted) -> Option<Adapted> {
-    let mut work = Work::new(input, metric, wanted)?;
+pub(crate) fn adapted(manifold: &Manifold, metric: &dyn SurfaceMetric, wanted: &Wanted) -> Option<Adapted> {
+    let mut work = Work::new(manifold, metric, wanted)?;
     if work.keeps_edges {
         work.split_long(wanted.count);
         return Some(work.finished());
     }
     // Large triangles turn over less easily; where the border cannot be had of them, smaller ones may let it go.
     work.contract_border();
-    work.split_long(MOST * (wanted.count + input.positions().len()));
+    work.split_long(MOST * (wanted.count + manifold.positions().len()));
     work.contract_border();
     if work.stuck().is_empty() {
         work.contract_to(wanted.count);
@@ -98,7 +98,7 @@ pub(crate) fn adapted(input: &Manifold, metric: &dyn SurfaceMetric, wanted: &Wan
 /// What is left of a triangulation of the surface when vertices are contracted until there are so many: onto those that are `kept`, as far as
 /// triangles stand upright. The first of these, so many, stay and come first; of the border no others are left.
 pub(crate) fn contracted(
-    input: &Manifold,
+    manifold: &Manifold,
     metric: &dyn SurfaceMetric,
     factor: f64,
     (topology, places): (Triangulation, Vec<Place>),
@@ -106,7 +106,7 @@ pub(crate) fn contracted(
     staying: usize,
     count: usize,
 ) -> Adapted {
-    let mut work = Work::of(input, metric, factor, topology, places);
+    let mut work = Work::of(manifold, metric, factor, topology, places);
     for (i, v) in (0..).zip(kept) {
         work.vertices[v.index()].given = Some(i);
     }
@@ -122,14 +122,14 @@ pub(crate) fn contracted(
 /// Exchanges vertices of a triangulation of the surface whose first `staying` places stay: edges that are too long are split, and as
 /// many vertices contracted where edges are shortest.
 pub(crate) fn exchanged(
-    input: &Manifold,
+    manifold: &Manifold,
     metric: &dyn SurfaceMetric,
     factor: f64,
     places: &[Place],
     topology: &Triangulation,
     staying: usize,
 ) -> Adapted {
-    let mut work = Work::of(input, metric, factor, topology.clone(), places.to_vec());
+    let mut work = Work::of(manifold, metric, factor, topology.clone(), places.to_vec());
     for (i, vertex) in (0..).zip(&mut work.vertices[..staying]) {
         vertex.given = Some(i);
     }

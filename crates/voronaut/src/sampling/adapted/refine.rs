@@ -91,8 +91,11 @@ impl Work<'_> {
     pub(super) fn middle(&self, h: HalfEdge) -> Option<Vertex> {
         let [p, q] = self.topology.ends(h).map(|v| self.at(v).place);
         let middle = p.position.lerp(q.position, 0.5);
-        let place =
-            if self.keeps_edges { self.input.place_on_triangles(&p, middle) } else { self.input.lift(&p, middle) }?;
+        let place = if self.keeps_edges {
+            self.manifold.place_on_triangles(&p, middle)
+        } else {
+            self.manifold.lift(&p, middle)
+        }?;
         Some(self.vertex(place))
     }
 

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 
 /// A triangulation in the making.
 pub(super) struct Work<'a> {
-    pub(super) input: &'a Manifold,
+    pub(super) manifold: &'a Manifold,
     metric: &'a dyn SurfaceMetric,
     /// The root of the factor on the metric.
     root: f64,
@@ -42,12 +42,12 @@ impl Vertex {
 }
 
 impl<'a> Work<'a> {
-    pub(super) fn new(input: &'a Manifold, metric: &'a dyn SurfaceMetric, wanted: &Wanted) -> Option<Self> {
-        let topology = input.topology().clone();
-        let nowhere = input.place(topology.faces().next()?, [1.0, 0.0, 0.0]);
+    pub(super) fn new(manifold: &'a Manifold, metric: &'a dyn SurfaceMetric, wanted: &Wanted) -> Option<Self> {
+        let topology = manifold.topology().clone();
+        let nowhere = manifold.place(topology.faces().next()?, [1.0, 0.0, 0.0]);
         let slots = (0..topology.vertex_slots() as u32).map(VertexId);
-        let places: Vec<Place> = slots.map(|v| input.place_of(v).unwrap_or(nowhere)).collect();
-        let mut work = Self::of(input, metric, wanted.factor, topology, places);
+        let places: Vec<Place> = slots.map(|v| manifold.place_of(v).unwrap_or(nowhere)).collect();
+        let mut work = Self::of(manifold, metric, wanted.factor, topology, places);
         work.keeps_edges = matches!(wanted.held, Holding::All);
         let is_near: Box<dyn Fn(Point3) -> bool + Sync> = match wanted.held {
             Holding::Near(held) => {
@@ -65,7 +65,7 @@ impl<'a> Work<'a> {
     }
 
     pub(super) fn of(
-        input: &'a Manifold,
+        manifold: &'a Manifold,
         metric: &'a dyn SurfaceMetric,
         factor: f64,
         topology: Triangulation,
@@ -73,7 +73,7 @@ impl<'a> Work<'a> {
     ) -> Self {
         let unused = topology.vertex_count() - topology.vertices().count();
         let mut work =
-            Self { input, metric, root: factor.sqrt(), topology, vertices: Vec::new(), unused, keeps_edges: false };
+            Self { manifold, metric, root: factor.sqrt(), topology, vertices: Vec::new(), unused, keeps_edges: false };
         work.vertices = places.into_par_iter().with_min_len(64).map(|place| work.vertex(place)).collect();
         work
     }
@@ -106,7 +106,7 @@ impl<'a> Work<'a> {
     }
 
     pub(super) fn vertex(&self, place: Place) -> Vertex {
-        let (facing, tensor) = (self.input.facing(&place), self.metric.at(&place));
+        let (facing, tensor) = (self.manifold.facing(&place), self.metric.at(&place));
         Vertex { place, facing, tensor, given: None, is_held: false }
     }
 

@@ -14,7 +14,7 @@ use crate::tests::parts::Part;
 use common::faults;
 
 /// What is meshed: the part with its features. The only place where these tests say how that is done.
-fn input(part: &Part) -> Manifold {
+fn manifold(part: &Part) -> Manifold {
     Manifold::of(&part.mesh).unwrap().cut(&FeatureOptions::default()).unwrap()
 }
 
@@ -33,16 +33,16 @@ fn distance(part: &Part, surface: &Surface, count: usize, metric: &str) -> f64 {
 /// Meshes a part with all that a distance asks for.
 fn keeps_distance(name: &str, share: f64) {
     let part = crate::tests::parts::all().into_iter().find(|part| part.name == name).unwrap();
-    let input = input(&part);
-    let hausd = share * input.diagonal();
+    let manifold = manifold(&part);
+    let hausd = share * manifold.diagonal();
     let field = field(
         &Spec::parse("uniform").unwrap(),
-        &input,
-        Bounds { h_max: Some(0.2 * input.diagonal()), ..Bounds::default() },
+        &manifold,
+        Bounds { h_max: Some(0.2 * manifold.diagonal()), ..Bounds::default() },
     )
     .unwrap();
     let options = MeshOptions { hausd: Some(hausd), ..MeshOptions::default() };
-    let mesh = mesh_surface(&input, field.as_ref(), None, &options, &Silent).unwrap().mesh;
+    let mesh = mesh_surface(&manifold, field.as_ref(), None, &options, &Silent).unwrap().mesh;
     let found = faults(&part, &mesh, hausd);
     println!("{name} within {hausd:.2e}: {} vertices, {} faults", mesh.points.len(), found.len());
     assert!(found.is_empty(), "{name}:\n{}", found[..found.len().min(8)].join("\n"));
@@ -58,12 +58,12 @@ fn distances_are_kept_where_they_are_asked_for() {
 /// Meshes a part with every number of vertices and checks all that is known of it.
 fn keeps_features(name: &str, metric: &str, counts: &[usize]) {
     let part = crate::tests::parts::all().into_iter().find(|part| part.name == name).unwrap();
-    let input = input(&part);
-    let field = field(&Spec::parse(metric).unwrap(), &input, Bounds::default()).unwrap();
+    let manifold = manifold(&part);
+    let field = field(&Spec::parse(metric).unwrap(), &manifold, Bounds::default()).unwrap();
     for &count in counts {
         let options = MeshOptions { vertices: Some(count), ..MeshOptions::default() };
-        let mesh = mesh_surface(&input, field.as_ref(), None, &options, &Silent).unwrap().mesh;
-        let found = faults(&part, &mesh, distance(&part, input.surface(), count, metric));
+        let mesh = mesh_surface(&manifold, field.as_ref(), None, &options, &Silent).unwrap().mesh;
+        let found = faults(&part, &mesh, distance(&part, manifold.surface(), count, metric));
         println!("{name} {metric} {count}: {} vertices, {} faults", mesh.points.len(), found.len());
         assert!(found.is_empty(), "{name} {metric} {count}:\n{}", found[..found.len().min(8)].join("\n"));
         // Curves take the vertices they need.

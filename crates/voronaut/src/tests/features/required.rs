@@ -6,7 +6,7 @@ use crate::manifold::surface::metric::{Sampled, Spec, field};
 use crate::mesh::{Mesh, Solution, SolutionValues};
 use crate::metric::Bounds;
 use crate::progress::Silent;
-use crate::quality::{check, surface_quality};
+use crate::quality::{check, metric_quality};
 use crate::recipe::{MeshOptions, mesh_surface};
 use crate::tests::parts;
 use std::collections::BTreeSet;
@@ -35,10 +35,10 @@ fn required_vertices_edges_and_triangles_stay_to_the_last_bit() {
     let [a, b, c] = mesh.triangles[second as usize];
     (mesh.edges, mesh.edge_labels, mesh.required_edges) = (vec![[a, b], [b, c]], vec![7, 7], vec![0, 1]);
     mesh.required_points = vec![mesh.triangles[third as usize][0]];
-    let input = cut(&mesh);
-    let metric = field(&Spec::parse("uniform").unwrap(), &input, Bounds::default()).unwrap();
+    let manifold = cut(&mesh);
+    let metric = field(&Spec::parse("uniform").unwrap(), &manifold, Bounds::default()).unwrap();
     let options = MeshOptions { vertices: Some(400), ..MeshOptions::default() };
-    let made = mesh_surface(&input, metric.as_ref(), None, &options, &Silent).unwrap().mesh;
+    let made = mesh_surface(&manifold, metric.as_ref(), None, &options, &Silent).unwrap().mesh;
     check(&made).unwrap();
     let places: BTreeSet<[u64; 3]> = (0..made.points.len() as u32).map(|v| bits(&made, v)).collect();
     assert!(places.contains(&bits(&mesh, mesh.required_points[0])));
@@ -60,13 +60,13 @@ fn sizes_at_the_vertices_of_the_file_hold_on_all_sides_of_creases() {
     // Finer towards the edge x = y = 0, which two sides have.
     let sizes = mesh.points.iter().map(|p| 0.05 + 0.15 * p[0].max(p[1])).collect();
     let solution = Solution { dimension: 3, values: SolutionValues::Scalar(sizes) };
-    let input = cut(&mesh);
-    let metric = Sampled::from_solution(input.surface(), &input.spread(&solution).unwrap()).unwrap();
-    let made = mesh_surface(&input, &metric, None, &MeshOptions::default(), &Silent).unwrap().mesh;
+    let manifold = cut(&mesh);
+    let metric = Sampled::from_solution(manifold.surface(), &manifold.spread(&solution).unwrap()).unwrap();
+    let made = mesh_surface(&manifold, &metric, None, &MeshOptions::default(), &Silent).unwrap().mesh;
     check(&made).unwrap();
-    let quality = surface_quality(&made, &input, &metric).unwrap();
+    let quality = metric_quality(&made, (&manifold, &metric)).unwrap();
     println!("{} vertices, {:?}", made.points.len(), quality.metric_edge_length);
     assert!(quality.metric_edge_length.unit_fraction > 0.95, "{:?}", quality.metric_edge_length);
     let few = Solution { dimension: 3, values: SolutionValues::Scalar(vec![1.0; 3]) };
-    assert!(input.spread(&few).unwrap_err().to_string().contains("3 values for"));
+    assert!(manifold.spread(&few).unwrap_err().to_string().contains("3 values for"));
 }

@@ -54,9 +54,9 @@ pub(crate) fn planar(domain: Domain, field: impl MetricField + Send + 'static, p
     Ground { name: "plane", places, land: Land::Plane(Arc::new(domain), Arc::new(field)) }
 }
 
-fn on_surface(name: &'static str, input: Manifold, metric: Tensor3, places: Vec<Point3>) -> Ground {
+fn on_surface(name: &'static str, manifold: Manifold, metric: Tensor3, places: Vec<Point3>) -> Ground {
     let metric = move |_: Point3| metric;
-    Ground { name, places, land: Land::Surface(Arc::new(input), Arc::new(metric)) }
+    Ground { name, places, land: Land::Surface(Arc::new(manifold), Arc::new(metric)) }
 }
 
 /// Points of the unit sphere, some nearly opposite to each other.
@@ -80,10 +80,10 @@ pub(crate) fn relaxed(p: Point3) -> Point3 {
 
 /// An ellipsoid that a linear map takes to the unit sphere, with the metric that makes distances those of the images.
 pub(crate) fn stretched_sphere() -> Ground {
-    let input = Manifold::shape("implicit:(x/4+0.2*y)^2+y^2+z^2-1;-5,-1.1,-1.1,5,1.1,1.1", Some(0.4)).unwrap();
+    let manifold = Manifold::shape("implicit:(x/4+0.2*y)^2+y^2+z^2-1;-5,-1.1,-1.1,5,1.1,1.1", Some(0.4)).unwrap();
     let metric = Tensor3 { xx: 1.0 / 16.0, xy: 0.05, yy: 1.04, ..Tensor3::IDENTITY };
     let stretched = |p: Point3| Point3::new(4.0 * (p.x - 0.2 * p.y), p.y, p.z);
-    on_surface("stretched sphere", input, metric, on_sphere().map(stretched).collect())
+    on_surface("stretched sphere", manifold, metric, on_sphere().map(stretched).collect())
 }
 
 /// The sheet of the cases.
@@ -97,7 +97,7 @@ pub(crate) fn sheet(name: &'static str, times: f64) -> Ground {
     let on_sheet = |p: &Point| wavy.rolled(Point::new(0.5 * wavy.length() * (1.0 + p.x), p.y));
     let along = times * times;
     let metric = Tensor3 { xx: along, zz: along, ..Tensor3::IDENTITY };
-    on_surface(name, wavy.input(15), metric, points(1.0).iter().map(on_sheet).collect())
+    on_surface(name, wavy.manifold(15), metric, points(1.0).iter().map(on_sheet).collect())
 }
 
 /// All surfaces.
@@ -131,7 +131,7 @@ impl Ground {
     pub(crate) fn times(&self, factor: f64) -> Self {
         let land = match self.land.clone() {
             Land::Plane(domain, field) => Land::Plane(domain, Arc::new(Times(field, factor))),
-            Land::Surface(input, metric) => Land::Surface(input, Arc::new(Times(metric, factor))),
+            Land::Surface(manifold, metric) => Land::Surface(manifold, Arc::new(Times(metric, factor))),
         };
         Self { land, ..self.clone() }
     }
@@ -144,9 +144,9 @@ impl Ground {
                 let places = self.places.iter().map(|p| Point::new(p.x, p.y)).collect();
                 Board::Plane(canvas, field.as_ref(), places)
             }
-            Land::Surface(input, metric) => {
-                let places: Vec<_> = self.places.iter().map(|&p| input.closest(p).unwrap()).collect();
-                let (canvas, at) = Canvas::on_surface(kind, input, metric.as_ref(), vertices, &places).unwrap();
+            Land::Surface(manifold, metric) => {
+                let places: Vec<_> = self.places.iter().map(|&p| manifold.closest(p).unwrap()).collect();
+                let (canvas, at) = Canvas::on_surface(kind, manifold, metric.as_ref(), vertices, &places).unwrap();
                 Board::Surface(canvas, at)
             }
         }

@@ -27,8 +27,8 @@ pub(crate) fn realised(domain: &str, field: &dyn MetricField, seeds: &[Point], c
     let domain = Domain::shape(domain).unwrap();
     let canvas = Canvas::intrinsic(domain.planar(), field, canvas).unwrap();
     let diagram = Diagram::new(&canvas, field, seeds).unwrap();
-    let dual = recipe::dual(&diagram, field, Road::Both, &Silent);
-    Realisation::new(&diagram, field, &dual.triangles)
+    let dual = recipe::dual(&diagram, Road::Both, &Silent);
+    Realisation::new(&diagram, &dual.triangles)
 }
 
 fn demand_embedded(found: &Realisation) -> Validity {
@@ -140,7 +140,7 @@ fn edges_are_led_around_a_hole() {
     let seeds = [(-0.2, -0.6), (-0.1, 0.7), (1.9, -1.9), (-1.9, 1.9)].map(|(x, y)| Point::new(x, y));
     let canvas = Canvas::intrinsic(domain.planar(), &field, 4000).unwrap();
     let diagram = Diagram::new(&canvas, &field, &seeds).unwrap();
-    let found = Realisation::new(&diagram, &field, &[[0, 2, 1], [1, 3, 0]]);
+    let found = Realisation::new(&diagram, &[[0, 2, 1], [1, 3, 0]]);
     let edge = &found.edges[found.edge_between(0, 1).unwrap()];
     let [below, above] = [-0.1, 0.1].map(|y| Point::new(-1.0, y));
     let shortest = seeds[0].distance(below) + 0.2 + above.distance(seeds[1]);

@@ -15,7 +15,7 @@ use crate::manifold::{Manifold, Place};
 use crate::mesh::Mesh;
 use crate::parallel::prelude::*;
 use crate::progress::Silent;
-use crate::recipe::surface_dual;
+use crate::recipe::dual;
 use crate::triangulation::{FaceId, HalfEdge, VertexId};
 use std::collections::{BTreeMap, HashMap};
 use std::f64::consts::PI;
@@ -235,22 +235,22 @@ fn ellipsoid(fineness: f64) -> Manifold {
     Manifold::new(Surface::new(&Mesh { points, ..sphere }).unwrap(), None)
 }
 
-fn compare(input: &Manifold, count: usize) {
-    let seeds = seeded(input.surface(), count);
-    let forced = by_force(input.surface(), &seeds);
+fn compare(manifold: &Manifold, count: usize) {
+    let seeds = seeded(manifold.surface(), count);
+    let forced = by_force(manifold.surface(), &seeds);
     let metric = Constant(Tensor3::IDENTITY);
-    let places: Vec<Place> = seeds.iter().map(|&v| input.place_of(v).unwrap()).collect();
+    let places: Vec<Place> = seeds.iter().map(|&v| manifold.place_of(v).unwrap()).collect();
     let size = size_for(places.len(), 20);
-    let (canvas, at) = Canvas::on_surface(Kind::Intrinsic, input, &metric, size, &places).unwrap();
+    let (canvas, at) = Canvas::on_surface(Kind::Intrinsic, manifold, &metric, size, &places).unwrap();
     let diagram = SurfaceDiagram::on_surface(&canvas, &at, Method::March).unwrap();
-    let ours = distinct(surface_dual(&diagram, Road::Both, &Silent).triangles.into_iter().map(in_order));
+    let ours = distinct(dual(&diagram, Road::Both, &Silent).triangles.into_iter().map(in_order));
     let wrong: Vec<_> = forced.iter().filter(|(t, _)| ours.binary_search(t).is_err()).collect();
     let clearly = wrong.iter().filter(|(_, gap)| **gap > 1e-3).count();
-    let expected = (2 * (seeds.len().cast_signed() - input.surface().euler_characteristic())) as usize;
+    let expected = (2 * (seeds.len().cast_signed() - manifold.surface().euler_characteristic())) as usize;
     let others = ours.iter().filter(|t| !forced.contains_key(*t)).count();
     println!(
         "{} vertices; of {expected} triangles {} by force and {} ours; {} missing ({clearly} above 1e-3), {others} others",
-        input.positions().len(),
+        manifold.positions().len(),
         forced.len(),
         ours.len(),
         wrong.len()

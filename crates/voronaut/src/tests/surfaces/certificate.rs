@@ -12,29 +12,29 @@ use crate::manifold::surface::sphere;
 use crate::manifold::{Manifold, Place};
 use crate::net::Net;
 use crate::progress::Silent;
-use crate::recipe::{surface_dual, surface_net};
+use crate::recipe::{dual, net};
 use std::f64::consts::{PI, TAU};
 
 /// Canvas vertices for each seed.
 const PER_SEED: usize = 20;
 
 fn with_diagram<T>(
-    input: &Manifold,
+    manifold: &Manifold,
     seeds: &[Point3],
     each: impl Fn(&SurfaceDiagram, &[[u32; 3]], Net<Place>) -> T,
 ) -> T {
     let metric = Constant(Tensor3::IDENTITY);
-    let places: Vec<Place> = seeds.iter().map(|&p| input.closest(p).unwrap()).collect();
+    let places: Vec<Place> = seeds.iter().map(|&p| manifold.closest(p).unwrap()).collect();
     let (canvas, at): (Canvas<Draped>, _) =
-        Canvas::on_surface(Kind::Intrinsic, input, &metric, PER_SEED * seeds.len(), &places).unwrap();
+        Canvas::on_surface(Kind::Intrinsic, manifold, &metric, PER_SEED * seeds.len(), &places).unwrap();
     let diagram = SurfaceDiagram::on_surface(&canvas, &at, Method::March).unwrap();
-    let exact = surface_dual(&diagram, Road::Geodesic, &Silent).exact;
-    let net = surface_net(&diagram, &exact);
+    let exact = dual(&diagram, Road::Geodesic, &Silent).exact;
+    let net = net(&diagram, &exact);
     each(&diagram, &exact, net)
 }
 
-fn certified(input: &Manifold, seeds: &[Point3]) -> Certificate {
-    with_diagram(input, seeds, |diagram, exact, net| {
+fn certified(manifold: &Manifold, seeds: &[Point3]) -> Certificate {
+    with_diagram(manifold, seeds, |diagram, exact, net| {
         Certificate::on_surface(diagram, exact, &net, Constants::Corrected)
     })
 }
@@ -63,9 +63,9 @@ fn random_on_sphere(count: usize) -> Vec<Point3> {
 
 #[test]
 fn nets_on_the_sphere_are_those_of_spherical_geometry() {
-    let input = Manifold::shape("sphere:1", Some(0.1)).unwrap();
+    let manifold = Manifold::shape("sphere:1", Some(0.1)).unwrap();
     for seeds in [sphere(1.0, 0.3).unwrap().positions().to_vec(), random_on_sphere(200)] {
-        let net = with_diagram(&input, &seeds, |_, _, net| net);
+        let net = with_diagram(&manifold, &seeds, |_, _, net| net);
         let at: Vec<Vector3> = seeds.iter().map(|&p| unit(p)).collect();
         assert_eq!((net.triangles.len(), net.unmeasured), (2 * seeds.len() - 4, 0));
         for ball in &net.triangles {
@@ -89,8 +89,8 @@ fn nets_on_the_sphere_are_those_of_spherical_geometry() {
 
 #[test]
 fn a_protected_net_of_the_sphere_has_an_embedded_dual_and_a_random_one_is_not_known_to() {
-    let input = Manifold::shape("sphere:1", Some(0.1)).unwrap();
-    let even = certified(&input, sphere(1.0, 0.3).unwrap().positions());
+    let manifold = Manifold::shape("sphere:1", Some(0.1)).unwrap();
+    let even = certified(&manifold, sphere(1.0, 0.3).unwrap().positions());
     // K = 1, and the injectivity radius is pi: estimated from below.
     let convexity = even.convexity;
     assert!(
@@ -104,14 +104,14 @@ fn a_protected_net_of_the_sphere_has_an_embedded_dual_and_a_random_one_is_not_kn
     let straight = verdict(&even, "11.2");
     assert!(straight.outcome == Outcome::NotMeasured && straight.not_measured.as_ref().unwrap().contains("section 12"));
     // A parallel projection shortens by the cosine of the angle, whose sine is the distance from the seed there.
-    let finer = certified(&input, sphere(1.0, 0.2).unwrap().positions());
+    let finer = certified(&manifold, sphere(1.0, 0.2).unwrap().positions());
     let psi = 1.0 / (1.0 - (6.0 * finer.net.epsilon).powi(2)).sqrt();
     assert!(finer.psi >= psi && finer.psi < 1.1 * psi, "{} {psi}", finer.psi);
     for theorem in ["9.1", "9.4", "9.9", "9.10"] {
         assert_eq!(verdict(&finer, theorem).outcome, Outcome::Fails, "{theorem}");
     }
     assert!(finer.walks.started > 0 && finer.walks.found == finer.walks.started, "{:?}", finer.walks);
-    let random = certified(&input, &random_on_sphere(160));
+    let random = certified(&manifold, &random_on_sphere(160));
     let found = verdict(&random, "10.20");
     assert!(found.outcome == Outcome::Fails && found.factor > 1.5, "{found:#?}");
     assert!(found.conditions[0].measured > found.conditions[0].limit, "{found:#?}");
@@ -120,7 +120,7 @@ fn a_protected_net_of_the_sphere_has_an_embedded_dual_and_a_random_one_is_not_kn
 /// Curvature alone would allow disks of radius pi / (2 sqrt K) = 0.52, but the way around the tube is 0.63 only.
 #[test]
 fn short_ways_around_a_thin_torus_are_seen() {
-    let (input, r) = (Manifold::shape("torus:1,0.1", Some(0.08)).unwrap(), 0.1);
+    let (manifold, r) = (Manifold::shape("torus:1,0.1", Some(0.08)).unwrap(), 0.1);
     let [around, across] = [80_u32, 8];
     let seed = |k: u32| {
         let (i, j) = (k / across, k % across);
@@ -130,7 +130,7 @@ fn short_ways_around_a_thin_torus_are_seen() {
         Point3::new(from_axis * u.cos(), from_axis * u.sin(), r * v.sin())
     };
     let seeds: Vec<Point3> = (0..around * across).map(seed).collect();
-    let found = certified(&input, &seeds);
+    let found = certified(&manifold, &seeds);
     let convexity = found.convexity;
     let curvature = 1.0 / (r * (1.0 + r));
     assert!((convexity.curvature / curvature - 1.0).abs() < 0.03, "{convexity:?} {curvature}");

@@ -16,8 +16,8 @@ fn options(vertices: usize) -> MeshOptions {
     MeshOptions { vertices: Some(vertices), lloyd: 0, seeding: Seeding::Protected, canvas_size: 10, ..usual }
 }
 
-fn meshed(input: &Manifold, options: &MeshOptions) -> Meshed {
-    let meshed = mesh_surface(input, &Constant(Tensor3::IDENTITY), None, options, &Silent).unwrap();
+fn meshed(manifold: &Manifold, options: &MeshOptions) -> Meshed {
+    let meshed = mesh_surface(manifold, &Constant(Tensor3::IDENTITY), None, options, &Silent).unwrap();
     assert!(validity(&meshed.mesh).valid);
     meshed
 }
@@ -84,9 +84,9 @@ fn arc(p: Point3, q: Point3) -> f64 {
 
 #[test]
 fn seeds_of_a_sphere_are_protected_and_their_net_is_that_of_spherical_geometry() {
-    let input = Manifold::shape("sphere:1", Some(0.1)).unwrap();
+    let manifold = Manifold::shape("sphere:1", Some(0.1)).unwrap();
     for protection in [0.45, 0.55] {
-        let meshed = meshed(&input, &MeshOptions { protection, ..options(200) });
+        let meshed = meshed(&manifold, &MeshOptions { protection, ..options(200) });
         demand_protected(&meshed, protection);
         assert_eq!((meshed.mesh.points.len(), net(&meshed).interior().count()), (200, 396));
         let circle = |[a, b, c]: [Point3; 3]| {
@@ -123,11 +123,11 @@ fn cube() -> Manifold {
 /// Features have their vertices where they have them without, and triangles the numbers of the mesh's vertices.
 #[test]
 fn seeds_on_features_stay() {
-    let input = cube();
-    let protected = meshed(&input, &options(300));
+    let manifold = cube();
+    let protected = meshed(&manifold, &options(300));
     demand_protected(&protected, 0.2);
     demand_circles_of_mesh(&protected);
-    let plain = meshed(&input, &MeshOptions { seeding: Seeding::Sizing, net: true, ..options(300) });
+    let plain = meshed(&manifold, &MeshOptions { seeding: Seeding::Sizing, net: true, ..options(300) });
     demand_circles_of_mesh(&plain);
     assert!(plain.protection.is_none() && net(&plain).delta() < net(&protected).delta());
     assert_eq!(plain.mesh.edges, protected.mesh.edges);
@@ -148,9 +148,9 @@ fn demand_circles_of_mesh(meshed: &Meshed) {
 
 #[test]
 fn protection_on_surfaces_does_not_depend_on_threads() {
-    let input = Manifold::shape("sphere:1", Some(0.1)).unwrap();
+    let manifold = Manifold::shape("sphere:1", Some(0.1)).unwrap();
     let options = MeshOptions { protection: 0.5, ..options(150) };
-    let with = |threads: usize| crate::test_cases::on_threads(threads, || meshed(&input, &options));
+    let with = |threads: usize| crate::test_cases::on_threads(threads, || meshed(&manifold, &options));
     let [one, three] = [1, 3].map(with);
     assert_eq!((&one.mesh, &one.surface_net, &one.protection), (&three.mesh, &three.surface_net, &three.protection));
 }

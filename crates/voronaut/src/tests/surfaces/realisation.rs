@@ -22,12 +22,12 @@ fn realised<T>(
     metric: &dyn SurfaceMetric,
     each: impl Fn(&SurfaceDiagram, Realisation<Point3>) -> T,
 ) -> T {
-    let input = Manifold::shape("sphere:1", None).unwrap();
-    let places: Vec<Place> = seeds.iter().map(|&p| input.closest(p).unwrap()).collect();
+    let manifold = Manifold::shape("sphere:1", None).unwrap();
+    let places: Vec<Place> = seeds.iter().map(|&p| manifold.closest(p).unwrap()).collect();
     let size = PER_SEED * seeds.len();
-    let (canvas, at) = Canvas::on_surface(Kind::Intrinsic, &input, metric, size, &places).unwrap();
+    let (canvas, at) = Canvas::on_surface(Kind::Intrinsic, &manifold, metric, size, &places).unwrap();
     let diagram = SurfaceDiagram::on_surface(&canvas, &at, Method::March).unwrap();
-    let triangles = recipe::surface_dual(&diagram, Road::Both, &Silent).triangles;
+    let triangles = recipe::dual(&diagram, Road::Both, &Silent).triangles;
     each(&diagram, Realisation::on_surface(&diagram, &triangles))
 }
 

@@ -10,7 +10,7 @@ use crate::manifold::Place;
 use crate::manifold::surface::metric::Constant;
 use crate::planar::{Planar, delaunay};
 use crate::progress::Silent;
-use crate::recipe::surface_dual;
+use crate::recipe::dual;
 use crate::tests::wavy::Wavy;
 use crate::triangulation::{FaceId, HalfEdge, smallest_first};
 use std::collections::HashSet;
@@ -52,17 +52,17 @@ fn truth(flat: &Planar, length: f64) -> Vec<([u32; 3], f64)> {
 #[test]
 fn duals_on_a_sheet_are_delaunay_unrolled() {
     let (sheet, mut random) = (Wavy::new(81), Random(88_172_645_463_325_252));
-    let input = sheet.input(25);
+    let manifold = sheet.manifold(25);
     let wanted = (0..SEEDS).map(|_| Point::new(sheet.length() * random.next(), 2.0 * random.next() - 1.0));
-    let places: Vec<Place> = wanted.map(|p| input.closest(sheet.rolled(p)).unwrap()).collect();
+    let places: Vec<Place> = wanted.map(|p| manifold.closest(sheet.rolled(p)).unwrap()).collect();
     let unrolled: Vec<Point> = places.iter().map(|place| sheet.unrolled(place.position)).collect();
     let truth = truth(&delaunay(&unrolled).unwrap(), sheet.length());
     assert!(truth.len() > 3400, "{}", truth.len());
     let metric = Constant(Tensor3::IDENTITY);
     for kind in Kind::ALL {
-        let (canvas, at) = Canvas::on_surface(kind, &input, &metric, size_for(SEEDS, 60), &places).unwrap();
+        let (canvas, at) = Canvas::on_surface(kind, &manifold, &metric, size_for(SEEDS, 60), &places).unwrap();
         let diagram = SurfaceDiagram::on_surface(&canvas, &at, Method::March).unwrap();
-        let dual = surface_dual(&diagram, Road::Geodesic, &Silent);
+        let dual = dual(&diagram, Road::Geodesic, &Silent);
         let found: HashSet<[u32; 3]> = dual.triangles.iter().copied().map(smallest_first).collect();
         let missing: Vec<_> = truth.iter().filter(|t| !found.contains(&t.0)).collect();
         let wrong = missing.iter().filter(|t| t.1 > MARGIN).count();

@@ -35,13 +35,14 @@ fn farthest_out(seeds: &[Point3], [a, b, c]: [u32; 3]) -> f64 {
 }
 
 fn dual_of(seeds: &[Point3], per_seed: usize) -> Vec<[u32; 3]> {
-    let input = Manifold::shape("sphere:1", None).unwrap();
+    let manifold = Manifold::shape("sphere:1", None).unwrap();
     let metric = Constant(Tensor3::IDENTITY);
-    let places: Vec<Place> = seeds.iter().map(|&p| input.closest(p).unwrap()).collect();
-    let (canvas, at) = Canvas::on_surface(Kind::Intrinsic, &input, &metric, per_seed * seeds.len(), &places).unwrap();
+    let places: Vec<Place> = seeds.iter().map(|&p| manifold.closest(p).unwrap()).collect();
+    let (canvas, at) =
+        Canvas::on_surface(Kind::Intrinsic, &manifold, &metric, per_seed * seeds.len(), &places).unwrap();
     let diagram = SurfaceDiagram::on_surface(&canvas, &at, Method::March).unwrap();
     assert_eq!(diagram.orphans().len(), 0);
-    recipe::surface_dual(&diagram, Road::Both, &Silent).triangles
+    recipe::dual(&diagram, Road::Both, &Silent).triangles
 }
 
 #[test]

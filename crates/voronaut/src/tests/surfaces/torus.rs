@@ -9,24 +9,24 @@ use crate::geometry::{Point3, Tensor3};
 use crate::manifold::surface::metric::Constant;
 use crate::manifold::{Manifold, Place};
 use crate::progress::Silent;
-use crate::recipe::surface_dual;
+use crate::recipe::dual;
 use std::collections::HashMap;
 use std::f64::consts::TAU;
 
 #[test]
 fn duals_on_a_torus_are_closed_with_characteristic_zero() {
-    let (input, metric) = (Manifold::shape("torus:2,0.7", None).unwrap(), Constant(Tensor3::IDENTITY));
+    let (manifold, metric) = (Manifold::shape("torus:2,0.7", None).unwrap(), Constant(Tensor3::IDENTITY));
     let mut random = Random(88_172_645_463_325_252);
     let mut seed = || {
         let (around, across) = (TAU * random.next(), TAU * random.next());
         let r = 2.0 + 0.7 * across.cos();
-        input.closest(Point3::new(r * around.cos(), r * around.sin(), 0.7 * across.sin())).unwrap()
+        manifold.closest(Point3::new(r * around.cos(), r * around.sin(), 0.7 * across.sin())).unwrap()
     };
     let places: Vec<Place> = (0..1000).map(|_| seed()).collect();
     let (canvas, at) =
-        Canvas::on_surface(Kind::Intrinsic, &input, &metric, size_for(places.len(), 60), &places).unwrap();
+        Canvas::on_surface(Kind::Intrinsic, &manifold, &metric, size_for(places.len(), 60), &places).unwrap();
     let diagram = SurfaceDiagram::on_surface(&canvas, &at, Method::March).unwrap();
-    let triangles = surface_dual(&diagram, Road::Geodesic, &Silent).triangles;
+    let triangles = dual(&diagram, Road::Geodesic, &Silent).triangles;
     let mut sides: HashMap<[u32; 2], u32> = HashMap::new();
     for [a, b, c] in &triangles {
         for side in [[*a, *b], [*b, *c], [*c, *a]] {

@@ -27,7 +27,7 @@ impl Wavy {
     }
 
     /// Its triangles, with so many rows of vertices.
-    pub(crate) fn input(&self, rows: u32) -> Manifold {
+    pub(crate) fn manifold(&self, rows: u32) -> Manifold {
         let n = self.columns.len() as u32;
         let y = |j: u32| 2.0 * f64::from(j) / f64::from(rows - 1) - 1.0;
         let points = (0..rows).flat_map(|j| self.columns.iter().map(move |&(x, _)| [x, y(j), height(x)])).collect();

@@ -20,9 +20,9 @@ const HALVINGS: u32 = 64;
 ///
 /// # Errors
 /// [`Error::Metric`](crate::Error::Metric) where the metric is not positive definite at a corner.
-pub(crate) fn area_of_surface(input: &Manifold, metric: &dyn SurfaceMetric, vertices: usize) -> Result<f64> {
-    let (ground, wanted) = (Ground { input, metric }, 2 * vertices);
-    let faces: Vec<FaceId> = input.topology().faces().collect();
+pub(crate) fn area_of_surface(manifold: &Manifold, metric: &dyn SurfaceMetric, vertices: usize) -> Result<f64> {
+    let (ground, wanted) = (Ground { manifold, metric }, 2 * vertices);
+    let faces: Vec<FaceId> = manifold.topology().faces().collect();
     let pieces: Result<Vec<Piece>> = faces.into_par_iter().with_min_len(64).map(|face| ground.piece(face)).collect();
     let pieces = pieces?;
     let mut limit = pieces.iter().map(Piece::first_edge).fold(0.0, f64::max);
@@ -55,7 +55,7 @@ struct Measured {
 }
 
 struct Ground<'a> {
-    input: &'a Manifold,
+    manifold: &'a Manifold,
     metric: &'a dyn SurfaceMetric,
 }
 
@@ -98,15 +98,15 @@ impl Piece {
 impl Ground<'_> {
     fn piece(&self, face: FaceId) -> Result<Piece> {
         let [a, b, c] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
-            .map(|weights| self.corner(face, weights, Point3::weighted(self.input.triangle(face), weights)));
+            .map(|weights| self.corner(face, weights, Point3::weighted(self.manifold.triangle(face), weights)));
         Ok(Piece::new(face, &[a?, b?, c?]))
     }
 
     fn corner(&self, face: FaceId, weights: [f64; 3], near: Point3) -> Result<Corner> {
-        let mut place = Place { position: near, ..self.input.place(face, weights) };
-        if self.input.equation().is_some() {
+        let mut place = Place { position: near, ..self.manifold.place(face, weights) };
+        if self.manifold.equation().is_some() {
             // Where f = 0 is not found the triangle is as good.
-            place = self.input.lift(&place, near).unwrap_or(place);
+            place = self.manifold.lift(&place, near).unwrap_or(place);
         }
         let tensor = self.metric.at(&place);
         check_tensor3(tensor, || place.position.to_string())?;

@@ -34,10 +34,10 @@ impl<'a> Closer<'a> {
     ///
     /// # Errors
     /// As [`Sizing::sizes`].
-    pub(crate) fn new(field: &'a dyn SurfaceMetric, input: &Manifold, hausd: f64) -> Result<Self> {
-        let [h_min, h_max] = LIMITS.map(|share| share * input.diagonal());
+    pub(crate) fn new(field: &'a dyn SurfaceMetric, manifold: &Manifold, hausd: f64) -> Result<Self> {
+        let [h_min, h_max] = LIMITS.map(|share| share * manifold.diagonal());
         let sizing = Sizing { hausd, h_min, h_max, hgrad: None, anisotropic: true };
-        let sizes = sizing.sizes(&input.surface, None)?.field(&input.surface)?;
+        let sizes = sizing.sizes(&manifold.surface, None)?.field(&manifold.surface)?;
         Ok(Self { field, sizes })
     }
 }
@@ -106,13 +106,13 @@ mod tests {
 
     #[test]
     fn fine_fields_stay_and_coarse_ones_become_fine() {
-        let input = Manifold::new(torus(2.0, 0.5, 0.1).unwrap(), None);
-        let place = input.closest(crate::geometry::Point3::new(2.5, 0.0, 0.0)).unwrap();
+        let manifold = Manifold::new(torus(2.0, 0.5, 0.1).unwrap(), None);
+        let place = manifold.closest(crate::geometry::Point3::new(2.5, 0.0, 0.0)).unwrap();
         let plane = TangentPlane::new(place.normal);
         let fine = Constant(Tensor3::isotropic(0.01));
-        assert_eq!(Closer::new(&fine, &input, 0.01).unwrap().at(&place), fine.0);
+        assert_eq!(Closer::new(&fine, &manifold, 0.01).unwrap().at(&place), fine.0);
         let coarse = Constant(Tensor3::isotropic(10.0));
-        let found = plane.restrict(Closer::new(&coarse, &input, 0.01).unwrap().at(&place)).eigen();
+        let found = plane.restrict(Closer::new(&coarse, &manifold, 0.01).unwrap().at(&place)).eigen();
         // Around the tube the curvature is 2, along the ring 0.4.
         for (eigenvalue, curvature) in [(found.large, 2.0), (found.small, 0.4)] {
             let truth = curvature / (SAGITTA * 0.01);

@@ -39,13 +39,13 @@ impl CovariantHessian {
     ///
     /// # Errors
     /// [`Error::Metric`] where a second derivative is not finite, or where all are zero.
-    pub(crate) fn new(function: &Expression, input: &Manifold, norm: Norm) -> Result<Self> {
-        let bend = match &input.implicit {
+    pub(crate) fn new(function: &Expression, manifold: &Manifold, norm: Norm) -> Result<Self> {
+        let bend = match &manifold.implicit {
             Some(f) => Bend::Equation(f.clone()),
-            None => Bend::fitted(&input.surface),
+            None => Bend::fitted(&manifold.surface),
         };
         let mut made = Self { function: function.clone(), bend, optimal: Optimal::new(norm), floor: 0.0 };
-        let mean = mean_over(&input.surface, |place| {
+        let mean = mean_over(&manifold.surface, |place| {
             let greatest = size(made.second_derivatives(place).1);
             if greatest.is_finite() { Ok(greatest) } else { Err(not_finite(place)) }
         })?;
@@ -130,8 +130,8 @@ fn mean_over(surface: &Surface, value: impl Fn(&Place) -> Result<f64> + Sync) ->
 ///
 /// # Errors
 /// [`Error::Metric`] unless there is one finite value for each vertex, and where all second derivatives vanish.
-pub(crate) fn recovered_on(input: &Manifold, values: &[f64], norm: Norm) -> Result<Sampled> {
-    let surface = &input.surface;
+pub(crate) fn recovered_on(manifold: &Manifold, values: &[f64], norm: Norm) -> Result<Sampled> {
+    let surface = &manifold.surface;
     let found = hessians_on(surface, values)?;
     let t = surface.topology();
     let mean = weighted_mean(surface, |v| found[v.index()].as_ref().map_or(0.0, |(_, hessian)| size(*hessian)));
@@ -237,11 +237,11 @@ mod tests {
 
     #[test]
     fn coordinates_of_the_sphere_are_curved_on_it() {
-        let input = Manifold::shape("sphere:1", Some(0.2)).unwrap();
-        let exact = CovariantHessian::new(&function("x"), &input, infinite()).unwrap();
-        let on_equation = |place: &Place| input.lift(place, place.position).unwrap();
-        for f in input.topology().faces() {
-            let place = on_equation(&input.place(f, [0.5, 0.2, 0.3]));
+        let manifold = Manifold::shape("sphere:1", Some(0.2)).unwrap();
+        let exact = CovariantHessian::new(&function("x"), &manifold, infinite()).unwrap();
+        let on_equation = |place: &Place| manifold.lift(place, place.position).unwrap();
+        for f in manifold.topology().faces() {
+            let place = on_equation(&manifold.place(f, [0.5, 0.2, 0.3]));
             let (plane, truth) = of_x(&place);
             let d = plane.restrict(exact.at(&place)) + truth * -1.0;
             assert!(place.position.x.abs() < 1e-3 || d.xx.abs() + d.xy.abs() + d.yy.abs() < 1e-12, "{d:?}");
@@ -252,11 +252,11 @@ mod tests {
     fn fitted_and_recovered_ones_come_near() {
         let errors: Vec<[f64; 2]> = [0.2, 0.1]
             .map(|size| {
-                let input = Manifold::new(sphere(1.0, size).unwrap(), None);
-                let values: Vec<f64> = input.positions().iter().map(|p| p.x).collect();
-                let fitted = CovariantHessian::new(&function("x"), &input, infinite()).unwrap();
-                let recovered = recovered_on(&input, &values, infinite()).unwrap();
-                let error = |field: &dyn SurfaceMetric| greatest_error(field, &input.surface, of_x);
+                let manifold = Manifold::new(sphere(1.0, size).unwrap(), None);
+                let values: Vec<f64> = manifold.positions().iter().map(|p| p.x).collect();
+                let fitted = CovariantHessian::new(&function("x"), &manifold, infinite()).unwrap();
+                let recovered = recovered_on(&manifold, &values, infinite()).unwrap();
+                let error = |field: &dyn SurfaceMetric| greatest_error(field, &manifold.surface, of_x);
                 [error(&fitted), error(&recovered)]
             })
             .to_vec();
@@ -279,16 +279,16 @@ mod tests {
             triangles: (0..64).flat_map(cell).collect(),
             ..crate::mesh::Mesh::default()
         };
-        let input = Manifold::of(&mesh).unwrap();
+        let manifold = Manifold::of(&mesh).unwrap();
         let text = "3*(0.6*x+0.8*z)^2 - (0.6*x+0.8*z)*y + 0.5*y^2";
-        let values: Vec<f64> = input.positions().iter().map(|p| function(text).at(p.x, p.y, p.z)).collect();
+        let values: Vec<f64> = manifold.positions().iter().map(|p| function(text).at(p.x, p.y, p.z)).collect();
         let [exact, found]: [Box<dyn SurfaceMetric>; 2] = [
-            Box::new(CovariantHessian::new(&function(text), &input, infinite()).unwrap()),
-            Box::new(recovered_on(&input, &values, infinite()).unwrap()),
+            Box::new(CovariantHessian::new(&function(text), &manifold, infinite()).unwrap()),
+            Box::new(recovered_on(&manifold, &values, infinite()).unwrap()),
         ];
         let plane = TangentPlane { u: along, v: up, normal: along.cross(up) };
         for field in [exact, found] {
-            let error = greatest_error(field.as_ref(), &input.surface, |_| (plane, Tensor::new(6.0, -1.0, 1.0)));
+            let error = greatest_error(field.as_ref(), &manifold.surface, |_| (plane, Tensor::new(6.0, -1.0, 1.0)));
             assert!(error < 1e-7, "{error}");
         }
     }

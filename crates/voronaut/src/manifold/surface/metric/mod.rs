@@ -101,6 +101,10 @@ impl SurfaceMetric for Scaled<'_> {
     fn at(&self, place: &Place) -> Tensor3 {
         self.field.at(place) * self.factor
     }
+
+    fn curvature_figures(&self) -> Option<CurvatureFigures> {
+        self.field.curvature_figures()
+    }
 }
 
 /// E does not depend on z: F = U diag(1 + phi |grad E|, 1, 1) U' has the planar field in its upper left corner.

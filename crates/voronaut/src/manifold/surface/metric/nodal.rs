@@ -35,10 +35,10 @@ impl TangentPlanes {
     }
 
     /// Of a surface that was cut, as they will be in a file for the surface before.
-    pub(crate) fn to_join(input: &Manifold) -> Self {
-        let before = (0..input.seams().vertices_before() as u32).map(VertexId);
-        let with_first = |v: VertexId| input.seams().copies(v)[1..].iter().map(move |w| [v.0, w.0]);
-        Self { copies: before.flat_map(with_first).collect(), is_joined: true, ..Self::of(&input.surface) }
+    pub(crate) fn to_join(manifold: &Manifold) -> Self {
+        let before = (0..manifold.seams().vertices_before() as u32).map(VertexId);
+        let with_first = |v: VertexId| manifold.seams().copies(v)[1..].iter().map(move |w| [v.0, w.0]);
+        Self { copies: before.flat_map(with_first).collect(), is_joined: true, ..Self::of(&manifold.surface) }
     }
 
     /// Of a surface as it is; vertices at equal positions, as they are where it was cut, are one.
@@ -57,8 +57,8 @@ impl TangentPlanes {
     }
 
     /// The place of a vertex, with the normal of its plane; nothing of one without triangles.
-    pub(crate) fn place(&self, input: &Manifold, v: u32) -> Option<Place> {
-        Some(Place { normal: self.planes[v as usize].normal, ..input.place_of(VertexId(v))? })
+    pub(crate) fn place(&self, manifold: &Manifold, v: u32) -> Option<Place> {
+        Some(Place { normal: self.planes[v as usize].normal, ..manifold.place_of(VertexId(v))? })
     }
 
     /// Which vertices share a triangle or are one.

@@ -55,19 +55,19 @@ impl Spec {
 ///
 /// # Errors
 /// The limits contradict each other; no curvature could be fitted.
-pub fn field(spec: &Spec, input: &Manifold, bounds: Bounds) -> Result<Box<dyn SurfaceMetric>> {
+pub fn field(spec: &Spec, manifold: &Manifold, bounds: Bounds) -> Result<Box<dyn SurfaceMetric>> {
     let field: Box<dyn SurfaceMetric> = match spec {
         Spec::Uniform => Box::new(Constant(Tensor3::IDENTITY)),
         Spec::Shock(shock) => Box::new(*shock),
         Spec::Formula(formula) => Box::new(formula.clone()),
         Spec::Curvature(floor) => {
-            let floor = floor.unwrap_or_else(|| FLOOR / input.bounds().diagonal());
-            match &input.implicit {
+            let floor = floor.unwrap_or_else(|| FLOOR / manifold.bounds().diagonal());
+            match &manifold.implicit {
                 Some(f) => Box::new(ImplicitCurvature { f: f.clone(), floor }),
-                None => Box::new(sampled_curvature(&input.surface, floor)?),
+                None => Box::new(sampled_curvature(&manifold.surface, floor)?),
             }
         }
-        Spec::Hessian(function) => Box::new(CovariantHessian::new(function, input, Norm::default())?),
+        Spec::Hessian(function) => Box::new(CovariantHessian::new(function, manifold, Norm::default())?),
     };
     within(field, bounds)
 }
@@ -76,8 +76,8 @@ pub fn field(spec: &Spec, input: &Manifold, bounds: Bounds) -> Result<Box<dyn Su
 ///
 /// # Errors
 /// There is not one value per vertex; the values are no metric.
-pub(crate) fn field_of_values(solution: &Solution, input: &Manifold) -> Result<Sampled> {
-    Sampled::from_solution(&input.surface, &input.spread(solution)?)
+pub(crate) fn field_of_values(solution: &Solution, manifold: &Manifold) -> Result<Sampled> {
+    Sampled::from_solution(&manifold.surface, &manifold.spread(solution)?)
 }
 
 /// A field within limits.
@@ -113,8 +113,8 @@ mod tests {
 
     #[test]
     fn every_metric_has_a_field() {
-        let input = Manifold::shape("sphere:2", Some(0.5)).unwrap();
-        let place = input.place_of(crate::triangulation::VertexId(7)).unwrap();
+        let manifold = Manifold::shape("sphere:2", Some(0.5)).unwrap();
+        let place = manifold.place_of(crate::triangulation::VertexId(7)).unwrap();
         let normal = (place.position - crate::geometry::Point3::default()) * 0.5;
         let plane = TangentPlane::new(normal);
         for (text, expected) in [
@@ -125,7 +125,7 @@ mod tests {
             ("shock:phi=0", Some(1.0)),
             ("shock", None),
         ] {
-            let field = field(&Spec::parse(text).unwrap(), &input, Bounds::default()).unwrap();
+            let field = field(&Spec::parse(text).unwrap(), &manifold, Bounds::default()).unwrap();
             let m = plane.restrict(field.at(&place));
             assert!(m.is_positive_definite());
             if let Some(expected) = expected {
@@ -133,7 +133,7 @@ mod tests {
                 assert!(error < 1e-12, "{text}: {m:?}");
             }
             let bounds = Bounds { h_max: Some(0.1), ..Bounds::default() };
-            let bounded = super::field(&Spec::parse(text).unwrap(), &input, bounds).unwrap();
+            let bounded = super::field(&Spec::parse(text).unwrap(), &manifold, bounds).unwrap();
             let sizes = TangentPlane::new(place.normal).restrict(bounded.at(&place)).eigen();
             assert!(sizes.small > 100.0 - 1e-9, "{text}: {sizes:?}");
         }
@@ -141,9 +141,9 @@ mod tests {
 
     #[test]
     fn shocks_are_thin_across_their_gradient() {
-        let input = Manifold::shape("sphere:2", Some(0.5)).unwrap();
-        let field = field(&Spec::parse("shock").unwrap(), &input, Bounds::default()).unwrap();
-        let place = input.place_of(crate::triangulation::VertexId(0)).unwrap();
+        let manifold = Manifold::shape("sphere:2", Some(0.5)).unwrap();
+        let field = field(&Spec::parse("shock").unwrap(), &manifold, Bounds::default()).unwrap();
+        let place = manifold.place_of(crate::triangulation::VertexId(0)).unwrap();
         let m = field.at(&place);
         assert!(m.xx > 1.0 && m.determinant() > 1.0);
         assert_eq!([m.xz, m.yz, m.zz].map(f64::to_bits), [0.0_f64, 0.0, 1.0].map(f64::to_bits));
