@@ -25,6 +25,7 @@ use crate::mesh::{Mesh, Solution};
 use crate::metric::Expression;
 use crate::parallel::prelude::*;
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
+use domain::Domain;
 use std::sync::OnceLock;
 use surface::{
     Closest, Component, FeatureGraph, FeatureOptions, Nearest, Seams, Surface, Whole, check_count, closest_weights,
@@ -76,6 +77,16 @@ impl Manifold {
     /// As for [`Surface::new`].
     pub fn of(mesh: &Mesh) -> Result<Self> {
         Ok(Self::new(Surface::new(mesh)?, None))
+    }
+
+    /// A planar domain: the plane is a surface with one flat chart. It is cut open along its segments, so that a mesh keeps them, and a metric of the
+    /// plane is that of its tensors in the plane z = 0.
+    ///
+    /// # Errors
+    /// As for [`Surface::new`], of triangles that rounding leaves without area.
+    pub fn flat(domain: &Domain) -> Result<Self> {
+        let corner = |v: VertexId| domain.sources()[v.index()];
+        Self::of(&domain.mesh_of(domain.planar(), corner))?.cut(&FeatureOptions { ar: None })
     }
 
     /// The same surface cut open along its features, so that a mesh keeps them. On an equation's surface no creases are looked

@@ -1,8 +1,10 @@
 //! Meshes of surfaces: valid, of the surface's topology, with their vertices on it.
 
+use std::collections::BTreeMap;
 use voronaut::canvas::Kind;
 use voronaut::dual::Road;
-use voronaut::geometry::Tensor3;
+use voronaut::geometry::{Point, Point3, Tensor, Tensor3};
+use voronaut::manifold::domain::{Domain, Polygon, Polygons, Ring, from_polygons};
 use voronaut::manifold::surface::metric::{Spec, SurfaceMetric, field};
 use voronaut::manifold::surface::{FeatureOptions, RepairOptions};
 use voronaut::manifold::{Manifold, Place};
@@ -10,7 +12,7 @@ use voronaut::mesh::Mesh;
 use voronaut::metric::Bounds;
 use voronaut::progress::Silent;
 use voronaut::quality::{metric_quality, surface_fidelity, validity};
-use voronaut::recipe::{MeshOptions, Meshed, Seeding, mesh_surface};
+use voronaut::recipe::{MeshOptions, Meshed, Seeding, mesh, mesh_surface};
 use voronaut_io::Given;
 
 /// A shape or a file.
@@ -38,6 +40,56 @@ fn meshed(manifold: &Manifold, metric: &str, options: &MeshOptions) -> (Meshed, 
     let meshed = mesh_surface(manifold, metric.as_ref(), None, options, &Silent).unwrap();
     let figures = metric_quality(&meshed.mesh, (manifold, &Scaled(metric.as_ref(), meshed.metric_scale))).unwrap();
     (meshed, figures.quality.mean, figures.quality.min)
+}
+
+/// The plane is a surface with one flat chart: a plate of two regions with a hole is meshed on both paths, with the same labels along the same lengths, the
+/// same areas, and as well.
+#[test]
+fn planar_domains_are_flat_manifolds() {
+    let ring = |x: [f64; 2], y: [f64; 2], label| Ring {
+        points: vec![Point::new(x[0], y[0]), Point::new(x[1], y[0]), Point::new(x[1], y[1]), Point::new(x[0], y[1])],
+        label,
+    };
+    let polygon = |number, region, rings| Polygon { feature: 1, number, region, rings };
+    let left = polygon(1, 1, vec![ring([0.0, 2.0], [0.0, 2.0], 1), ring([0.5, 1.5], [0.5, 1.5], 2)]);
+    let right = polygon(2, 7, vec![ring([2.0, 4.0], [0.0, 2.0], 3)]);
+    let domain = Domain::new(&from_polygons(&Polygons { polygons: vec![left, right] }).unwrap()).unwrap();
+    let flat = Manifold::flat(&domain).unwrap();
+    let options = MeshOptions { vertices: Some(800), ..MeshOptions::default() };
+    let thickness = |y: f64| 0.1 + 0.2 * (y - 1.0).abs();
+    let planar = |p: Point| Tensor::new(9.0, 0.0, 1.0 / thickness(p.y).powi(2));
+    let in_space = |p: Point3| Tensor3 { xx: 9.0, yy: 1.0 / thickness(p.y).powi(2), zz: 1.0, ..Tensor3::default() };
+    let in_plane = mesh(&domain, &planar, &options, &Silent).unwrap();
+    let on_surface = mesh_surface(&flat, &in_space, None, &options, &Silent).unwrap();
+    let [a, b] = [&in_plane.mesh, &on_surface.mesh];
+    assert!(validity(b).valid && b.is_planar() && a.points.len().abs_diff(b.points.len()) <= 8);
+    let lengths = |mesh: &Mesh| {
+        let mut sums = BTreeMap::new();
+        for (ends, label) in mesh.edges.iter().zip(&mesh.edge_labels) {
+            let [p, q] = ends.map(|v| mesh.position(v));
+            *sums.entry(*label).or_insert(0.0) += p.distance(q);
+        }
+        sums
+    };
+    let areas = |mesh: &Mesh| {
+        let mut sums = BTreeMap::new();
+        for (&t, label) in mesh.triangles.iter().zip(&mesh.triangle_labels) {
+            let [p, q, r] = mesh.positions_of(t);
+            *sums.entry(*label).or_insert(0.0) += 0.5 * (q - p).cross(r - p).z;
+        }
+        sums
+    };
+    let are_close = |x: &BTreeMap<i32, f64>, y: &BTreeMap<i32, f64>| {
+        x.len() > 1 && x.keys().eq(y.keys()) && x.values().zip(y.values()).all(|(x, y)| (x - y).abs() < 1e-12)
+    };
+    assert!(are_close(&lengths(a), &lengths(b)) && are_close(&areas(a), &areas(b)));
+    let quality = |meshed: &Meshed| {
+        let unit = |p: Point| planar(p) * meshed.metric_scale;
+        let found = metric_quality(&meshed.mesh, &unit).unwrap();
+        (found.metric_edge_length.unit_fraction, found.quality.mean)
+    };
+    let (plane, surface) = (quality(&in_plane), quality(&on_surface));
+    assert!((plane.0 - surface.0).abs() < 0.03 && (plane.1 - surface.1).abs() < 0.03, "{plane:?} {surface:?}");
 }
 
 /// Least mean and least quality that are asked for: low where the metric changes much over an edge.
