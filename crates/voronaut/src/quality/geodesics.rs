@@ -1,6 +1,6 @@
 //! The edges of a mesh as geodesics, from the metric alone: how long, and which way they leave their ends.
 
-use super::metric_quality::{angle, collect};
+use super::planar_quality::{angle, collect};
 use crate::error::Result;
 use crate::geodesic::{Fineness, Logarithm, Paths};
 use crate::geometry::{Point, Vector};
@@ -86,7 +86,7 @@ fn logarithm(paths: &Paths, metric: &dyn MetricField, [p, q]: [Point; 2]) -> Opt
 
 #[cfg(test)]
 mod tests {
-    use super::super::metric_quality::edge_length;
+    use super::super::planar_quality::edge_length;
     use super::super::test_meshes::mesh;
     use super::*;
     use crate::geometry::Tensor;

@@ -1,7 +1,7 @@
 //! How metric edge lengths and angles are distributed, with straight edges and with geodesic ones (RR-9103, figure 20).
 
 use super::geodesics::{Found, MeasuredEdge, geodesic, measure};
-use super::metric_quality::{
+use super::planar_quality::{
     Corners, EdgeLengths, angle, collect, demand_planar, demand_vertices, edge_length, tensor,
 };
 use super::surface_quality::Field;

@@ -1,7 +1,7 @@
 //! What a mesh is in a metric, in the plane or on a surface.
 
 use super::histogram::{self, Histograms};
-use super::metric_quality::{self, MetricQuality};
+use super::planar_quality::{self, MetricQuality};
 use super::surface_quality;
 use super::unmet::{self, Unmet};
 use crate::error::Result;
@@ -22,7 +22,7 @@ use crate::mesh::Mesh;
 /// positive definite at a vertex or at a Gauss point.
 pub fn metric_quality<'a>(mesh: &Mesh, on: impl Into<Riemannian<'a>>) -> Result<MetricQuality> {
     match on.into() {
-        Riemannian::Plane(metric) => metric_quality::in_plane(mesh, metric),
+        Riemannian::Plane(metric) => planar_quality::in_plane(mesh, metric),
         Riemannian::Surface(manifold, metric) => surface_quality::on_surface(mesh, manifold, metric),
     }
 }

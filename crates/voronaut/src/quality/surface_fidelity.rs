@@ -1,7 +1,7 @@
 //! How far the mesh of a surface strays from it: in distance, and in direction.
 
 use super::faults::Position;
-use super::metric_quality::{Spot, demand_vertices, fault, spot};
+use super::planar_quality::{Spot, demand_vertices, fault, spot};
 use super::sampled_distance::{Sample, Sampled, sample};
 use crate::curved::{Place, Rule, points_in_space};
 use crate::elementary::Elementary;

@@ -2,7 +2,7 @@
 
 use super::faults::Position;
 use super::geodesics::{Found, MeasuredEdge, geodesic};
-use super::metric_quality::{GAUSS, MetricQuality, Shape, collect, demand_vertices, fault, figures};
+use super::planar_quality::{GAUSS, MetricQuality, Shape, collect, demand_vertices, fault, figures};
 use crate::elementary::Elementary;
 use crate::error::Result;
 use crate::geometry::{Point, Point3, Seen, TangentPlane, Tensor, Vector, Vector3};

@@ -1,7 +1,7 @@
 //! Why an edge cannot be of unit length: what has to be kept (borders, features, corners, required edges), how dense vertices are
 //! around it, or a metric that turns too fast for straight edges.
 
-use super::super::metric_quality::edge_length;
+use super::super::planar_quality::edge_length;
 use super::{Around, RANGE, is_unit};
 use crate::elementary::Elementary;
 use crate::geodesic::bowed_chord;

@@ -6,7 +6,7 @@ mod tests;
 
 use super::curved;
 use super::faults::{Position, middle};
-use super::metric_quality::{Corners, MetricQuality, Shape, Shapes, demand_planar, demand_vertices, of_edges, summed};
+use super::planar_quality::{Corners, MetricQuality, Shape, Shapes, demand_planar, demand_vertices, of_edges, summed};
 use super::surface_quality::Field;
 use crate::curved::Rule;
 use crate::elementary::Elementary;
