@@ -13,7 +13,7 @@ use voronaut::progress::Silent;
 use voronaut::quality::{Meetings, validity, validity_on};
 use voronaut::recipe::{self, GradedAt, MeshOptions, MetricOptions, Seeding};
 use voronaut::manifold::Manifold;
-use voronaut::manifold::surface::{FeatureOptions, Surface, metric};
+use voronaut::manifold::surface::{FeatureOptions, metric};
 
 /// What users write as a metric; the letters are replaced by numbers.
 const PLANAR: [&str; 8] = [
@@ -34,7 +34,7 @@ fn plane(bytes: &mut Unstructured) -> Result<()> {
     let gradation = if bytes.ratio(1, 8)? { Some(f64::from(bytes.int_in_range(105..=300)?) / 100.0) } else { None };
     let metric = MetricOptions { gradation, bounds: bounds(bytes)?, ..MetricOptions::default() };
     let at = GradedAt::of(options.vertices, None);
-    let field = MetricSpec::parse(&text).and_then(|spec| recipe::metric(&spec, &domain, &metric, at));
+    let field = MetricSpec::parse(&text).and_then(|spec| recipe::metric(&spec, domain.planar(), &metric, at));
     let Some(field) = accepted(field) else { return Ok(()) };
     let meshed = match recipe::mesh_for(&domain, field.field.as_ref(), field.aim(metric.norm), &options, &Silent) {
         Err(error @ Error::Mesh { .. }) => panic!("{error}: {text}, {options:?}"),
@@ -48,15 +48,15 @@ fn plane(bytes: &mut Unstructured) -> Result<()> {
 
 fn surface(bytes: &mut Unstructured) -> Result<()> {
     let mesh = grid(bytes)?;
-    let Some(surface) = accepted(Surface::new(&mesh)) else { return Ok(()) };
+    let Some(whole) = accepted(Manifold::of(&mesh)) else { return Ok(()) };
     let ar = if bytes.arbitrary()? { Some(f64::from(bytes.int_in_range(5..=120)?)) } else { None };
-    let Some(input) = accepted(Manifold::new(surface, None).cut(&FeatureOptions { ar })) else { return Ok(()) };
+    let Some(input) = accepted(whole.cut(&FeatureOptions { ar })) else { return Ok(()) };
     let options = options(bytes)?;
     let text = numbered(bytes.choose(&ON_SURFACES)?, bytes)?;
     let bounds = bounds(bytes)?;
     let field = metric::Spec::parse(&text).and_then(|spec| metric::field(&spec, &input, bounds));
     let Some(field) = accepted(field) else { return Ok(()) };
-    let Some(made) = accepted(recipe::mesh_surface(&input, field.as_ref(), &options, &Silent)) else { return Ok(()) };
+    let Some(made) = accepted(recipe::mesh_surface(&input, field.as_ref(), None, &options, &Silent)) else { return Ok(()) };
     let checked = validity_on(&made.mesh, &Meetings::of(mesh));
     assert!(checked.valid, "{:?}: {text}, {options:?}", checked.first_fault);
     Ok(())
