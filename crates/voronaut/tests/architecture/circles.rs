@@ -86,7 +86,9 @@ impl House {
         // What is handed on may be handed on again.
         for _ in 0..8 {
             let next = (1..=full.len()).find_map(|n| {
-                let to = self.handed_on.get(&(full[..n - 1].to_vec(), full[n - 1].clone()))?;
+                // What a module and an item are named alike is the module where a path goes on.
+                let is_module = n < full.len() && self.files.contains_key(&full[..n]);
+                let to = self.handed_on.get(&(full[..n - 1].to_vec(), full[n - 1].clone())).filter(|_| !is_module)?;
                 Some([to, &full[n..]].concat())
             });
             let Some(next) = next.filter(|next| *next != full) else { break };

@@ -4,6 +4,7 @@
 //! against the scale on which the Hessian changes (Loseille and Alauzet 2011). Real triangles are neither, and where the
 //! function is saddle-shaped longer ones are as good. The last tenth is gained on the error itself.
 
+mod frame;
 mod moves;
 mod objective;
 mod on_surface;
@@ -17,7 +18,7 @@ use crate::metric::{Expression, Near, Norm, ScalarField};
 use crate::parallel::prelude::*;
 use crate::progress::Progress;
 use crate::triangulation::{FaceId, HalfEdge, Triangulation, VertexId};
-use moves::Frame;
+use frame::Frame;
 pub(crate) use objective::polishing_norm;
 use objective::{Objective, Place};
 use on_surface::OnSurface;

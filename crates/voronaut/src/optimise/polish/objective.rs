@@ -1,7 +1,7 @@
 //! The error of linear interpolation on a triangle, and how it changes where a corner moves.
 
 use super::Sheet;
-use super::moves::Frame;
+use super::frame::Frame;
 use crate::elementary::Elementary;
 use crate::geometry::{Jet, Node, Vector, radon};
 use crate::metric::{Near, Norm};

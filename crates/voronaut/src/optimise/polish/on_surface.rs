@@ -1,7 +1,7 @@
 //! What polishing works on on a surface: the mesh in the making there, with the metric where its seeds were at first.
 
 use super::Sheet;
-use super::moves::Frame;
+use super::frame::Frame;
 use crate::dual::{Kind, Moving, SurfaceDual};
 use crate::geometry::{Point3, Seen, Vector, Vector3};
 use crate::manifold::Place;

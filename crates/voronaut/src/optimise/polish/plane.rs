@@ -1,7 +1,7 @@
 //! What polishing works on in the plane: a triangulation and the dual that it was made of, with the metric where vertices were.
 
 use super::Sheet;
-use super::moves::Frame;
+use super::frame::Frame;
 use crate::dual::{Dual, Kind, Moving};
 use crate::geometry::{Jet, Point, Vector, combine, signed_area};
 use crate::metric::{Near, ScalarField};
