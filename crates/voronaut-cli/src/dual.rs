@@ -188,10 +188,7 @@ fn on_surface(args: &DualArgs, world: &World, input: &Manifold, mended: &Mended,
         let found = validity_on(&mesh, &Meetings::of(input.whole_mesh()));
         (mesh, found, None)
     };
-    let mut found = work.found(canvas.figures(), straight, stages)?;
-    if !found.report.validity.valid {
-        found.report.notes.push("straight triangles of the dual do not make a valid mesh of these seeds".into());
-    }
+    let found = work.found(canvas.figures(), straight, stages)?;
     let draw = || pictures::on_surface(&args.outputs, &diagram, &found.mesh, found.curved.as_ref());
     let picture = args.outputs.picture.is_some().then(draw).transpose()?;
     work.finish(found, picture)
@@ -255,6 +252,9 @@ impl<'a, G: Measured<'a>> Work<'_, 'a, G> {
         }
         report.notes = notes(diagram, &report);
         report.notes.extend(self.mended.sentences().chain(meets));
+        if matches!(self.on, Riemannian::Surface(..)) && !report.validity.valid {
+            report.notes.push("straight triangles of the dual do not make a valid mesh of these seeds".into());
+        }
         // Parts of "dual".
         report.seconds = stages.seconds(seconds);
         demand_embedded(args, self.world, &report)?;

@@ -304,8 +304,15 @@ impl Manifold {
         self.nearest().nearer(p, than)
     }
 
+    /// Makes ready what closest points are found by, before a loop in which all cores would.
+    pub(crate) fn prepare(&self) {
+        self.nearest();
+    }
+
     fn nearest(&self) -> &Nearest {
-        self.nearest.get_or_init(|| Nearest::new(&self.surface))
+        // Made on all cores, and so not under a lock: who waits for the rest of it may take up a part of a loop that asks for it, too.
+        let made = self.nearest.get().is_none().then(|| Nearest::new(&self.surface));
+        self.nearest.get_or_init(|| made.expect("made if there was none"))
     }
 
     /// The place of the surface that a point near a place is nearest to: found from triangle to triangle or, on an equation's

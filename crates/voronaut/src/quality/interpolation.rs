@@ -79,6 +79,7 @@ pub fn interpolation_error_on(
     function: &Expression,
     norm: Norm,
 ) -> Result<InterpolationError> {
+    manifold.prepare();
     let value = |p: Point3| function.at(p.x, p.y, p.z);
     let beside = |triangle: [Point3; 3]| manifold.closest(Point3::weighted(triangle, [1.0 / 3.0; 3])).ok();
     let lifted = |near: &Option<manifold::Place>, p: Point3| {

@@ -79,6 +79,7 @@ pub fn surface_fidelity(mesh: &Mesh, surface: &Manifold) -> Result<SurfaceFideli
         return Err(fault("a position is not finite", &p.to_string()));
     }
     let target = Target { surface };
+    surface.prepare();
     let floor = NOTHING * target.diagonal();
     let there = sample(&triangles, floor, |at| Sample { at, distance: target.closest(at).position.distance(at) });
     let tree = Nearest::of(triangles.iter().copied());
@@ -107,6 +108,7 @@ pub fn surface_fidelity(mesh: &Mesh, surface: &Manifold) -> Result<SurfaceFideli
 /// For each vertex of the surface the greatest distance between mesh and surface that is seen at some points of its triangles, or of
 /// those of the mesh there: corners, middles of edges and centroids.
 pub(crate) fn distances_around(mesh: &Mesh, surface: &Manifold) -> Vec<f64> {
+    surface.prepare();
     let target = Target { surface };
     let triangles: Vec<[Point3; 3]> = mesh.triangles.iter().map(|&t| mesh.positions_of(t)).collect();
     let tree = Nearest::of(triangles.iter().copied());

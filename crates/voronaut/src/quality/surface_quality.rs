@@ -28,6 +28,7 @@ pub(super) struct Field<'a> {
 
 impl<'a> Field<'a> {
     pub(super) fn new(surface: &'a Manifold, metric: &'a dyn SurfaceMetric) -> Self {
+        surface.prepare();
         Self { surface, metric }
     }
 

@@ -95,6 +95,7 @@ pub(super) fn named(
         SurfaceSource::Function(given) => within_surface(Box::new(recovered(given, manifold, options)?), manifold, at),
         SurfaceSource::Solution(mesh, given) => {
             let own = Manifold::of(mesh)?.cut(&FeatureOptions::default())?;
+            own.prepare();
             match given {
                 SolutionValues::Scalar(given) => {
                     let field = Elsewhere { field: recovered(given, &own, options)?, there: own };

@@ -87,6 +87,8 @@ impl<'a> Samples<'a> {
 
     /// Closest points among all triangles of a mesh and of the surface; none are farther than those known.
     pub(super) fn assign(&self, surface: &Manifold, mesh: &Manifold, known: Option<&Assignment>) -> Assignment {
+        surface.prepare();
+        mesh.prepare();
         let sheet = Sheet::of(mesh);
         let find = |on: &Manifold, sheet: &Sheet, p: Point3, known: Option<Foot>| {
             let nearer = on.nearer(p, known.map_or(f64::INFINITY, |foot| foot.square()));

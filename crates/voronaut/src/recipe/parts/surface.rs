@@ -81,6 +81,7 @@ struct OfWhole<'a> {
 
 impl<'a> OfWhole<'a> {
     fn new(part: &Manifold, whole: &'a Manifold, metric: &'a dyn SurfaceMetric) -> Self {
+        whole.prepare();
         let faces: Vec<FaceId> = part.topology().faces().collect();
         let near = |&f: &FaceId| {
             let middle = part.place(f, [1.0 / 3.0; 3]);
