@@ -457,6 +457,16 @@ mod tests {
         }
     }
 
+    /// The tree is made on all cores, which may take up the loop's other parts meanwhile, and these ask for it as well.
+    #[test]
+    fn a_loop_on_all_cores_may_be_the_first_that_asks_for_closest_points() {
+        let torus = Manifold::new(surface::torus(2.0, 0.7, 0.03).unwrap(), None);
+        let points: Vec<Point3> = (0..400).map(|i| Point3::new(f64::from(i).sin(), f64::from(i).cos(), 0.1)).collect();
+        let found: Vec<Option<Closest>> =
+            crate::test_cases::on_threads(4, || points.par_iter().map(|&p| torus.closest_of_triangles(p)).collect());
+        assert!(found.iter().zip(&points).all(|(found, &p)| *found == torus.closest_of_triangles(p)));
+    }
+
     #[test]
     fn points_far_off_are_refused() {
         let sphere = Manifold::shape("sphere:1", None).unwrap();

@@ -49,7 +49,7 @@ pub trait Measured<'a>: Ground<'a> {
     /// What lines are of.
     type Point: Copy + Into<[f64; 3]> + Send + Sync;
 
-    /// See [`dual`].
+    /// Of a Riemannian diagram: see [`dual`], which takes any.
     fn dual(diagram: &Diagram<'a, Self>, road: Road, progress: &dyn Progress) -> SeedDual;
     /// See [`net`], whose epsilon knows canvas vertices, too.
     fn net(diagram: &Diagram<'a, Self>, exact: &[[u32; 3]]) -> Net<Self::Seed>;

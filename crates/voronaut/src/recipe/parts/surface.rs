@@ -140,6 +140,7 @@ impl Divisible for OnSurface<'_> {
 
     /// By the mean of the lengths in the metrics at both ends.
     fn logarithms(&self, mesh: &Mesh, edges: &[[u32; 2]]) -> Vec<f64> {
+        self.manifold.prepare();
         let mut normal = vec![crate::geometry::Vector3::default(); mesh.points.len()];
         for &t in &mesh.triangles {
             let [a, b, c] = mesh.positions_of(t);
